@@ -1,0 +1,2 @@
+//! From what the user typed to a checked, immutable plan.
+pub mod plan;

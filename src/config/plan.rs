@@ -1,0 +1,299 @@
+//! What a config file says, checked and complete: the [`Plan`].
+//!
+//! Nothing after the config stage looks at TOML again. Every derived size is computed once, from the
+//! plan, by [`crate::learner`].
+
+use crate::world::World;
+use std::path::PathBuf;
+
+/// A whole experiment, ready to run: every default filled in, every name resolved.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// The config file's stem, which names the run folder.
+    pub name: String,
+    /// Where the config file lies.
+    pub source: PathBuf,
+    /// One line that says what the experiment is for.
+    pub title: String,
+    /// Key of everything that all learners share: the teacher's bank of lessons and the planner's trials.
+    pub run_seed: u32,
+    /// One learner per arm and seed. Ascending, without repeats.
+    pub seeds: Vec<u32>,
+    /// The floor plan.
+    pub world: World,
+    /// The world file's text, kept so that a run folder can hold it.
+    pub world_text: String,
+    /// The experimental conditions, in the order of the file.
+    pub arms: Vec<Arm>,
+    /// When and how learners are tested.
+    pub evaluate: Evaluate,
+    /// The teacher's bank and how it demonstrates.
+    pub teacher: Teacher,
+    /// The whole config as resolved TOML: defaults, file and `--set` merged. Reading it gives this plan.
+    pub resolved: String,
+}
+
+/// One experimental condition: the base config with this arm's changes applied.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Arm {
+    /// Key of the arm in the config, `[a-z0-9-]+`.
+    pub name: String,
+    /// The skills in training order; the last one is the root of the skill tree.
+    pub skills: Vec<Skill>,
+    /// Sensors and actuators of this arm's robots.
+    pub noise: Noise,
+}
+
+/// A skill as defined in TOML.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Skill {
+    /// Key of the skill in the config.
+    pub name: String,
+    /// The net's inputs, in order.
+    pub inputs: Vec<Input>,
+    /// What the skill chooses among.
+    pub children: Vec<Action>,
+    /// Amount paid for each event, in the order of [`Event::ALL`].
+    pub reward: [f32; Event::ALL.len()],
+    /// Where training trials start: regions of the world and the share of trials that start there (shares sum to 1).
+    pub starts: Vec<(String, f32)>,
+    /// Region in which tests start.
+    pub tests: String,
+    /// Bits of the events (see [`Event::bit`]) that end a trial as achieved.
+    pub ends: u32,
+    /// Primitive steps after which a trial is cut, 1 to 255.
+    pub max_steps: u32,
+    /// Taught lessons given before the first trial.
+    pub lessons: u32,
+    /// Training trials.
+    pub trials: u32,
+    /// How the skill is learned.
+    pub learning: Learning,
+}
+
+/// One group of a net's inputs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Input {
+    /// 24 values `2 exp(-(d - 12) / scale) - 1` of the sonar reading `d`: fine near the body. Our choice.
+    Sonar {
+        /// Decay in inches.
+        scale: f32,
+    },
+    /// 24 values `2 d / 127 - 1`. Our choice.
+    SonarFar,
+    /// 24 values 0 or 1.
+    Light,
+    /// Four values 0 or 1: front, left, back, right.
+    Bumpers,
+    /// Cosine and sine of the compass reading.
+    Compass,
+}
+
+impl Input {
+    /// Number of net inputs that the group takes.
+    pub fn width(self) -> u32 {
+        match self {
+            Self::Sonar { .. } | Self::SonarFar | Self::Light => 24,
+            Self::Bumpers => 4,
+            Self::Compass => 2,
+        }
+    }
+}
+
+/// A primitive move (paper, section III).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Action {
+    /// Turn 15 degrees counter-clockwise.
+    TurnLeft15 = 0,
+    /// Turn 15 degrees clockwise.
+    TurnRight15 = 1,
+    /// Turn 60 degrees counter-clockwise.
+    TurnLeft60 = 2,
+    /// Turn 60 degrees clockwise.
+    TurnRight60 = 3,
+    /// Move 12 inches along the heading.
+    Forward = 4,
+    /// Move 12 inches against the heading.
+    Backward = 5,
+}
+
+impl Action {
+    /// All six, by code.
+    pub const ALL: [Self; 6] =
+        [Self::TurnLeft15, Self::TurnRight15, Self::TurnLeft60, Self::TurnRight60, Self::Forward, Self::Backward];
+
+    /// The name used in configs, on the command line and in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::TurnLeft15 => "turn+15",
+            Self::TurnRight15 => "turn-15",
+            Self::TurnLeft60 => "turn+60",
+            Self::TurnRight60 => "turn-60",
+            Self::Forward => "move+12",
+            Self::Backward => "move-12",
+        }
+    }
+
+    /// Turn of the heading in degrees, counter-clockwise.
+    pub fn turn(self) -> f32 {
+        match self {
+            Self::TurnLeft15 => 15.0,
+            Self::TurnRight15 => -15.0,
+            Self::TurnLeft60 => 60.0,
+            Self::TurnRight60 => -60.0,
+            Self::Forward | Self::Backward => 0.0,
+        }
+    }
+
+    /// Travel along the heading in inches.
+    pub fn travel(self) -> f32 {
+        match self {
+            Self::Forward => 12.0,
+            Self::Backward => -12.0,
+            _ => 0.0,
+        }
+    }
+}
+
+/// Something that one primitive step can bring about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Event {
+    /// The charger stopped a forward move with the contact point within the tolerance of the heading.
+    Docked = 0,
+    /// A move was cut short by contact with anything.
+    Collision = 1,
+    /// The centre reached another room than the trial's first and is clear of the doorway.
+    PassedDoor = 2,
+}
+
+impl Event {
+    /// All events, by code.
+    pub const ALL: [Self; 3] = [Self::Docked, Self::Collision, Self::PassedDoor];
+
+    /// The name used in configs.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Docked => "docked",
+            Self::Collision => "collision",
+            Self::PassedDoor => "passed-door",
+        }
+    }
+
+    /// The event's bit in event sets.
+    pub fn bit(self) -> u32 {
+        1 << self as u32
+    }
+}
+
+/// How a skill is learned. All numbers are per-learner data: arms and sweep points differ in them at no cost.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Learning {
+    /// Hidden units of each net, 1 to 32.
+    pub hidden: u32,
+    /// Initial weights are uniform in plus or minus this.
+    pub init: f32,
+    /// Discount factor.
+    pub gamma: f32,
+    /// Mixing of the replayed return: 0 is TD(0), 1 the observed return.
+    pub lambda: f32,
+    /// The optimiser and its rates.
+    pub optimiser: Optimiser,
+    /// Reward of this size is learned as Q = 1.
+    pub reward_scale: f32,
+    /// Targets are clipped to plus or minus this, inside the bounded output's range.
+    pub target_limit: f32,
+    /// Inverse temperature at the first trial, in units of 1 / (Q / reward_scale).
+    pub inverse_temperature_start: f32,
+    /// Inverse temperature at the end of the schedule.
+    pub inverse_temperature_end: f32,
+    /// Trials over which it rises linearly.
+    pub inverse_temperature_trials: u32,
+    /// A replayed step is learned only if its action's current probability exceeds this.
+    pub policy_threshold: f32,
+    /// Lessons replayed after each trial.
+    pub replays: u32,
+    /// Latest lessons that are kept.
+    pub memory: u32,
+    /// Mean age, in lessons, of the replayed ones (exponential recency).
+    pub mean_age: f32,
+    /// Passes over each taught lesson before the first trial.
+    pub taught_passes: u32,
+    /// Taught lessons replayed after each trial.
+    pub taught_replays: u32,
+    /// Taught steps count as policy actions whatever their probability.
+    pub taught_always: bool,
+    /// A trial cut at the step limit ends with value 0 (true), or with the value of its last observation (false).
+    pub timeout_terminal: bool,
+    /// An action that was just blocked is not available on the next step.
+    pub mask_blocked: bool,
+}
+
+/// Weight update rule.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Optimiser {
+    /// Stochastic gradient descent with momentum.
+    Sgd {
+        /// Learning rate.
+        rate: f32,
+        /// Momentum, 0 for none.
+        momentum: f32,
+    },
+    /// Adam with bias correction.
+    Adam {
+        /// Learning rate.
+        rate: f32,
+        /// Decay of the mean gradient.
+        beta1: f32,
+        /// Decay of the mean squared gradient.
+        beta2: f32,
+        /// Added to the root of the mean squared gradient.
+        epsilon: f32,
+    },
+}
+
+/// Distribution of a noise term.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+pub enum NoiseKind {
+    /// The amount is a standard deviation (four 16-bit uniforms summed; nothing beyond 3.46 deviations).
+    Gaussian = 0,
+    /// The amount is the half-width.
+    Uniform = 1,
+}
+
+/// Noise of one arm's robots. Amounts of 0 switch a term off.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Noise {
+    /// Shape of every term.
+    pub kind: NoiseKind,
+    /// Relative, on each turn and travel.
+    pub actuator: f32,
+    /// Relative, on each sonar range.
+    pub sonar: f32,
+    /// Relative, on each light intensity before the threshold.
+    pub light: f32,
+    /// In degrees, on the compass.
+    pub compass: f32,
+}
+
+/// When and how learners are tested.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Evaluate {
+    /// Trials of a skill after which it is tested, ascending; each arm also tests after its last trial.
+    pub at: Vec<u32>,
+    /// Greedy test trials each time, the same starts for a learner every time.
+    pub episodes: u32,
+}
+
+/// The teacher: a privileged planner.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Teacher {
+    /// Lessons in the bank of each skill; learners draw theirs from it.
+    pub bank: u32,
+    /// Cost, in reward units, that the demonstrator puts on backing up, so that it drives as a person would.
+    pub backward_cost: f32,
+    /// Test trials of the planner itself, which give the bound that reports show.
+    pub episodes: u32,
+}

@@ -1,0 +1,2 @@
+//! The memory of a learner.
+pub mod layout;

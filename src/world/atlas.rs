@@ -1,0 +1,1 @@
+//! From a floor plan to the words that the kernels read: the [`WorldPlan`] and the read-only atlas.
