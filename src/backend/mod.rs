@@ -3,6 +3,8 @@
 //! Both backends execute the same three kernels on the same memory and, where the adapter is exact, leave
 //! the same bytes. `cpu` touches no wgpu and runs where no Vulkan is installed.
 
+pub mod cpu;
+
 use crate::learner::layout::{Cursor, Episode, PHASE_DONE, PHASE_START, Robot, Settings};
 use crate::learner::memory::Shared;
 
@@ -71,12 +73,12 @@ pub trait Backend {
     /// Where the device cannot hold it.
     fn load(&mut self, cohort: Cohort) -> Result<(), BackendError>;
 
-    /// Moves every learner on by a bounded amount of work, about half a second's, and says how many
-    /// learners now hold at `stop`.
+    /// Moves every learner that does not hold at `stop` on by a bounded amount of work, about half a
+    /// second's in all, and shows where the learners stand.
     ///
     /// # Errors
     /// Where the device fails.
-    fn advance(&mut self, stop: Stop) -> Result<usize, BackendError>;
+    fn advance(&mut self, stop: Stop) -> Result<&[Cursor], BackendError>;
 
     /// Runs a whole test: every learner's episodes, learner by learner.
     ///
