@@ -203,7 +203,8 @@ fn robots_fit_anywhere_in_every_start_cell() {
         for region in names {
             let cells = world.region_cells(&region).expect("a listed region");
             assert!(cells.len() > 100, "{name} {region}: {}", cells.len());
-            for cell in cells {
+            // A few of them: walking along every side is slow.
+            for cell in cells.into_iter().step_by(11) {
                 let corner = DVec2::new(f64::from(cell & 0xffff), f64::from(cell >> 16)) * 2.0;
                 for _ in 0..3 {
                     let at = corner + DVec2::new(next(), next()) * 2.0;

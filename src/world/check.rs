@@ -10,12 +10,25 @@ use glam::Vec2;
 /// Where the parts of a world were written, in the order of the world's own lists.
 #[derive(Debug, Default)]
 pub(super) struct Written {
-    pub(super) walls: Vec<Origin>,
-    pub(super) boxes: Vec<Origin>,
-    pub(super) rooms: Vec<Origin>,
     pub(super) doors: Vec<Origin>,
     pub(super) light: Option<Origin>,
     pub(super) places: Vec<Origin>,
+}
+
+/// Refuses rooms that share floor, at the later one of the two.
+pub(super) fn overlap(rooms: &[Room], written: &[Origin]) -> Result<(), ConfigError> {
+    for (i, (room, origin)) in rooms.iter().zip(written).enumerate() {
+        for other in &rooms[..i] {
+            let low = room.area.min.max(other.area.min);
+            let high = room.area.max.min(other.area.max);
+            if high.cmpgt(low).all() {
+                let message = format!("the rooms `{}` and `{}` overlap", other.name, room.name);
+                let hint = format!("both hold {}, {} to {}, {}", low.x, low.y, high.x, high.y);
+                return Err(origin.error(message, hint));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// What is wrong with a door, before it is known where that was written.
@@ -106,7 +119,6 @@ pub(super) fn check(world: &World, written: &Written, whole: &Origin) -> Result<
         let hint = "add [[rooms]] with name = \"A\" and box = [0, 0, 360, 420]";
         return Err(whole.file_error("the world has no rooms", hint));
     }
-    rooms(world, written)?;
     doors(world, written)?;
     light(world, written)?;
     for ((name, pose), origin) in world.places.iter().zip(&written.places) {
@@ -129,21 +141,6 @@ fn fit(clearance: f32) -> String {
     } else {
         format!("the nearest solid is {clearance:.1} inches away; the robot needs 12")
     }
-}
-
-fn rooms(world: &World, written: &Written) -> Result<(), ConfigError> {
-    for (i, room) in world.rooms.iter().enumerate() {
-        for other in &world.rooms[..i] {
-            let low = room.area.min.max(other.area.min);
-            let high = room.area.max.min(other.area.max);
-            if high.cmpgt(low).all() {
-                let message = format!("the rooms `{}` and `{}` overlap", other.name, room.name);
-                let hint = format!("both hold {}, {} to {}, {}", low.x, low.y, high.x, high.y);
-                return Err(written.rooms[i].error(message, hint));
-            }
-        }
-    }
-    Ok(())
 }
 
 fn doors(world: &World, written: &Written) -> Result<(), ConfigError> {

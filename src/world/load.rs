@@ -36,9 +36,9 @@ pub fn parse(text: &str, source: &Path) -> Result<World, ConfigError> {
     let floor = Rect { min: Vec2::ZERO, max: size };
 
     let mut written = Written::default();
-    let walls = walls(&root, &floor, &mut written)?;
-    let boxes = boxes(&root, &floor, &mut written)?;
-    let rooms = rooms(&root, &floor, &mut written)?;
+    let walls = walls(&root, &floor)?;
+    let boxes = boxes(&root, &floor)?;
+    let rooms = rooms(&root, &floor)?;
     let doors = doors(&root, &rooms, &mut written)?;
     let charger = charger(&root, &floor)?;
     let light = light(&root, &floor, &mut written)?;
@@ -103,7 +103,7 @@ fn point(item: &Item<'_>, floor: &Rect) -> Result<Vec2, ConfigError> {
     if holds(floor, point) { Ok(point) } else { Err(outside(item, floor)) }
 }
 
-fn walls(root: &Table<'_>, floor: &Rect, written: &mut Written) -> Result<Vec<(Vec2, Vec2)>, ConfigError> {
+fn walls(root: &Table<'_>, floor: &Rect) -> Result<Vec<(Vec2, Vec2)>, ConfigError> {
     let mut walls = Vec::new();
     for item in listed(root, "walls", MAX_SEGMENTS)? {
         let [x1, y1, x2, y2] = item.numbers::<4>("[x1, y1, x2, y2] in inches")?;
@@ -115,19 +115,13 @@ fn walls(root: &Table<'_>, floor: &Rect, written: &mut Written) -> Result<Vec<(V
         if a.distance(b) < 0.01 {
             return Err(item.error(format!("`{}` has no length", item.name), "its two ends must differ"));
         }
-        written.walls.push(item.origin().clone());
         walls.push((a, b));
     }
     Ok(walls)
 }
 
-fn boxes(root: &Table<'_>, floor: &Rect, written: &mut Written) -> Result<Vec<Rect>, ConfigError> {
-    let mut boxes = Vec::new();
-    for item in listed(root, "boxes", MAX_SEGMENTS)? {
-        boxes.push(rect(&item, floor)?);
-        written.boxes.push(item.origin().clone());
-    }
-    Ok(boxes)
+fn boxes(root: &Table<'_>, floor: &Rect) -> Result<Vec<Rect>, ConfigError> {
+    listed(root, "boxes", MAX_SEGMENTS)?.iter().map(|item| rect(item, floor)).collect()
 }
 
 /// A name that no earlier one equals.
@@ -139,17 +133,19 @@ fn fresh<'a>(item: &Item<'a>, taken: &[&str]) -> Result<&'a str, ConfigError> {
     Ok(name)
 }
 
-fn rooms(root: &Table<'_>, floor: &Rect, written: &mut Written) -> Result<Vec<Room>, ConfigError> {
+fn rooms(root: &Table<'_>, floor: &Rect) -> Result<Vec<Room>, ConfigError> {
     let mut rooms: Vec<Room> = Vec::new();
+    let mut written = Vec::new();
     for item in listed(root, "rooms", MAX_ROOMS)? {
         let table = item.table()?;
         let taken: Vec<&str> = rooms.iter().map(|room| room.name.as_str()).collect();
         let name = fresh(&table.required("name", "\"A\"")?, &taken)?.to_owned();
         let area = table.required("box", "[0, 0, 176, 200]")?;
-        written.rooms.push(area.origin().clone());
+        written.push(area.origin().clone());
         rooms.push(Room { name, area: rect(&area, floor)? });
         table.finish()?;
     }
+    check::overlap(&rooms, &written)?;
     Ok(rooms)
 }
 
