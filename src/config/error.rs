@@ -126,10 +126,10 @@ impl Complaint {
 
 /// The name of `allowed` that was most likely meant.
 pub(crate) fn nearest<'a>(name: &str, allowed: &[&'a str]) -> Option<&'a str> {
-    let distance = |other: &&str| strsim::damerau_levenshtein(name, other);
+    let distance = |other: &&str| strsim::damerau_levenshtein(&name.to_lowercase(), &other.to_lowercase());
     let best = allowed.iter().copied().min_by_key(distance)?;
     // A third of the letters may be wrong; beyond that a suggestion is a guess.
-    (distance(&best) <= (name.chars().count().max(best.chars().count()) / 3).max(1)).then_some(best)
+    (distance(&best) <= name.chars().count().max(best.chars().count()) / 3).then_some(best)
 }
 
 /// A hint for an unknown name: the likely one, or all that are allowed.
