@@ -55,6 +55,8 @@ impl ConfigError {
         };
         let reason = match error.kind() {
             std::io::ErrorKind::NotFound => "there is no such file".to_owned(),
+            std::io::ErrorKind::IsADirectory => "it is a folder".to_owned(),
+            std::io::ErrorKind::InvalidData => "it is not text".to_owned(),
             _ => error.to_string(),
         };
         Self::new(Place::File(path.to_owned()), format!("cannot read the {what}: {reason}"), hint)

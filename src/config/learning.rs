@@ -4,7 +4,7 @@ use super::error::ConfigError;
 use super::keys;
 use super::plan::{Learning, Optimiser};
 use super::read::{Item, Section};
-use super::tree::{Node, Source};
+use super::tree::Node;
 use std::sync::Arc;
 
 /// Keys that only the other optimiser reads, as found: an arm may leave them alone, but not all arms.
@@ -25,7 +25,7 @@ impl Idle {
 
     /// Refuses keys that somebody wrote and no skill of any arm uses.
     pub(super) fn finish(self) -> Result<(), ConfigError> {
-        match self.0.into_iter().find(|(_, node, used)| !used && is_written(node)) {
+        match self.0.into_iter().find(|(_, _, used)| !used) {
             None => Ok(()),
             Some((name, node, _)) => {
                 let needed = if name.ends_with(keys::MOMENTUM.name()) { "sgd" } else { "adam" };
@@ -36,21 +36,18 @@ impl Idle {
     }
 }
 
-/// Whether a value is more than a default.
-fn is_written(node: &Node) -> bool {
-    !matches!(&*node.origin.source, Source::Default(_))
-}
-
 /// Reads a complete `learning` table.
 pub(super) fn read(item: &Item<'_>, idle: &mut Idle) -> Result<Learning, ConfigError> {
     let section = Section(item.table()?);
     let sgd = section.choice(&keys::OPTIMISER)? == 1;
-    for key in [keys::BETA1, keys::BETA2, keys::EPSILON] {
-        idle.note(section.0.optional(key.name()), !sgd);
+    for (key, used) in [(keys::BETA1, !sgd), (keys::BETA2, !sgd), (keys::EPSILON, !sgd), (keys::MOMENTUM, sgd)] {
+        // A key that repeats its default does no harm; a resolved config is full of them.
+        let default = key.default.and_then(|text| text.parse().ok());
+        let same = Some(f64::from(section.number(&key)?)) == default.map(|value: f64| f64::from(value as f32));
+        idle.note(section.0.optional(key.name()), used || same);
     }
-    idle.note(section.0.optional(keys::MOMENTUM.name()), sgd);
     let rate = section.number(&keys::RATE)?;
-    let unset = section.0.optional(keys::RATE.name()).is_none_or(|item| !is_written(item.node));
+    let unset = section.0.optional(keys::RATE.name()).is_none_or(|item| item.origin().is_default());
     if sgd && unset {
         let optimiser = section.required(&keys::OPTIMISER, "\"sgd\"")?;
         return Err(optimiser.error("sgd has no default rate", "add `rate = 0.15` beside it"));

@@ -35,6 +35,17 @@ impl Origin {
         ConfigError::new(place, message, hint)
     }
 
+    /// Whether nobody wrote this: it is a default.
+    pub(crate) fn is_default(&self) -> bool {
+        matches!(&*self.source, Source::Default(_))
+    }
+
+    fn replace_default(&mut self, other: Self) {
+        if self.is_default() {
+            *self = other;
+        }
+    }
+
     /// A complaint about the whole text.
     pub(crate) fn file_error(&self, message: impl Into<String>, hint: impl Into<String>) -> ConfigError {
         let place = match &*self.source {
@@ -101,7 +112,7 @@ impl Node {
         match self.value {
             Value::Text(_) => "a string",
             Value::Integer(_) => "a whole number",
-            Value::Float(_) => "a number",
+            Value::Float(_) => "a decimal number",
             Value::Flag(_) => "true or false",
             Value::List(_) => "a list",
             Value::Table(_) => "a table",
@@ -143,12 +154,13 @@ impl Node {
         match (&mut self.value, over.value) {
             (Value::Table(below), Value::Table(above)) => {
                 // What somebody wrote is a better place for complaints than a default.
-                if matches!(&*self.origin.source, Source::Default(_)) {
-                    self.origin = over.origin;
-                }
+                self.origin.replace_default(over.origin);
                 for entry in above {
                     match below.iter_mut().find(|old| old.key == entry.key) {
-                        Some(old) if entry.key != "starts" => old.node.merge(entry.node),
+                        Some(old) if entry.key != "starts" => {
+                            old.origin.replace_default(entry.origin);
+                            old.node.merge(entry.node);
+                        }
                         Some(old) => *old = entry,
                         None => below.push(entry),
                     }
