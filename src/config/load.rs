@@ -111,6 +111,7 @@ fn teacher(root: &Table<'_>) -> Result<Teacher, ConfigError> {
     let section = Section(root.required("teacher", "{}")?.table()?);
     let teacher = Teacher {
         bank: section.whole(&keys::TEACHER_BANK)?,
+        discount: section.number(&keys::TEACHER_DISCOUNT)?,
         backward_cost: section.number(&keys::TEACHER_BACKWARD_COST)?,
         episodes: section.whole(&keys::TEACHER_EPISODES)?,
     };
