@@ -224,3 +224,11 @@ fn check_format(path: &Path, metadata: &ParquetMetaData) -> Result<(), RecordErr
     }
     Err(RecordError::Format { path: path.into(), found, known: FORMAT })
 }
+
+/// Turns a panic of the parquet crate into an error: it asserts things that a damaged file can break (in 60.1.0 the
+/// sign of offsets and the presence of dictionaries). Files of a run folder have passed their hash before.
+pub(super) fn guarded<T>(path: &Path, read: impl FnOnce() -> Result<T, RecordError>) -> Result<T, RecordError> {
+    // Nothing outlives a panic here: the reader and all columns are dropped with it.
+    std::panic::catch_unwind(std::panic::AssertUnwindSafe(read))
+        .unwrap_or_else(|_| Err(RecordError::damaged(path, "not a Parquet file that can be decoded")))
+}

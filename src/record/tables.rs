@@ -145,6 +145,10 @@ pub fn write_evaluations(rows: &[EvaluationRow], names: &Names) -> Result<Vec<u8
 /// [`RecordError::Damaged`] for anything but a table of exactly these columns, [`RecordError::Unreadable`],
 /// [`RecordError::Format`].
 pub fn read_trials(path: &Path) -> Result<(Names, Vec<TrialRow>), RecordError> {
+    columns::guarded(path, || trials_of(path))
+}
+
+fn trials_of(path: &Path) -> Result<(Names, Vec<TrialRow>), RecordError> {
     let table = Table::read(path, TRIAL_SCHEMA)?;
     let (arm, arms) = table.text(0)?;
     let (skill, skills) = table.text(3)?;
@@ -172,6 +176,10 @@ pub fn read_trials(path: &Path) -> Result<(Names, Vec<TrialRow>), RecordError> {
 /// # Errors
 /// As [`read_trials`].
 pub fn read_evaluations(path: &Path) -> Result<(Names, Vec<EvaluationRow>), RecordError> {
+    columns::guarded(path, || evaluations_of(path))
+}
+
+fn evaluations_of(path: &Path) -> Result<(Names, Vec<EvaluationRow>), RecordError> {
     let table = Table::read(path, EVALUATION_SCHEMA)?;
     let (arm, arms) = table.text(0)?;
     let (skill, skills) = table.text(3)?;
