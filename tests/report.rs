@@ -67,8 +67,8 @@ fn statistics_match_rliable_and_numpy() {
     close(share_below(&[0.4, 0.5, 0.6, 0.1], 0.5), 0.5, 0.0);
 }
 
-/// NumPy, a million resamples of the first column. Three Monte-Carlo errors of a 2.5 percent quantile of 50,000 draws
-/// are below 0.003 here.
+/// NumPy on the first column. The mean: a million resamples. The interquartile mean of 7 values takes few values, so the
+/// ends are those whose exact distribution function (all 1,716 resamples, weighted) is within three Monte-Carlo errors.
 #[test]
 fn bootstrap_intervals_match_numpy() {
     let column = first_column();
@@ -76,8 +76,8 @@ fn bootstrap_intervals_match_numpy() {
     close(interval.low, 0.24587364, 0.003);
     close(interval.high, 0.63973337, 0.003);
     let interval = bootstrap(&column, interquartile_mean, 50_000);
-    close(interval.low, 0.2141646, 0.003);
-    close(interval.high, 0.67687541, 0.003);
+    assert!((0.2006..=0.2142).contains(&interval.low), "{interval:?}");
+    assert!((0.6741..=0.6792).contains(&interval.high), "{interval:?}");
     assert_eq!(bootstrap(&column, mean, 1000), bootstrap(&column, mean, 1000));
     let (difference, interval) = paired_difference(&column, &column, 100);
     assert_eq!((difference, interval.low, interval.high), (0.0, 0.0, 0.0));

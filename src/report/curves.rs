@@ -162,7 +162,11 @@ fn draw_labels(canvas: &mut Canvas, figure: &Figure, curves: &[Curve], x: &Axis,
     let left = x.points.1 + LEADER;
     for (label, at) in labels.iter().zip(spread(&ends, LABEL_ROOM, (TOP - 8.0, y.points.0))) {
         let color = label.curve.map_or(INK, |i| COLORS[i % COLORS.len()]);
-        canvas.line(&[(label.end.0, label.end.1), (x.points.1 + 4.0, label.end.1), (left - 3.0, at)], color, 0.75);
+        // A leader that crosses the plot would look like a curve; there the marker alone tells whose label it is.
+        if label.end.0 > x.points.1 - 6.0 {
+            let elbow = (x.points.1 + 5.0, label.end.1);
+            canvas.line(&[label.end, elbow, (left - 3.0, at)], color, 0.75);
+        }
         match label.curve {
             Some(i) => marker(canvas, i, (left + 4.0, at), color),
             None => canvas.dashes((left, at), (left + 9.0, at), INK, 1.4, 3.0),

@@ -6,7 +6,7 @@ use crate::world::{Light, Pose, ROBOT_RADIUS, Rect, World};
 use glam::Vec2;
 use plotters::style::RGBColor;
 
-const MARGIN: f64 = 24.0;
+const MARGIN: f64 = 34.0;
 const TOP: f64 = 62.0;
 const BOTTOM: f64 = 44.0;
 /// Points that the longer side of the floor takes.
@@ -23,14 +23,14 @@ const ROOM: RGBColor = RGBColor(0xb4, 0xb4, 0xb4);
 
 /// Draws the floor plan with its rooms, doors, charger, light and places.
 pub fn draw_world(world: &World) -> String {
-    let ring = if world.light.is_some() { " Dotted: range of the light." } else { "" };
+    let ring = if world.light.is_some() { " Dashed: range of the light." } else { "" };
     let subtitle = format!("{} by {} inches. Arrows: named places.{ring}", world.size.x, world.size.y);
     let mut floor = Floor::new(world, &format!("Floor plan: {}", world.name), &subtitle);
-    floor.rooms(world);
-    floor.solids(world);
     if let Some(light) = &world.light {
         floor.range(world, light);
     }
+    floor.rooms(world);
+    floor.solids(world);
     for (name, pose) in &world.places {
         floor.robot(pose);
         let behind = Vec2::from_angle(pose.heading.to_radians()) * -(ROBOT_RADIUS + 9.0);
@@ -64,7 +64,7 @@ pub fn draw_light(world: &World, reading: &PlaceReading) -> String {
     floor.solids(world);
     let pose = pose(reading);
     for (i, &bit) in reading.light.iter().enumerate() {
-        let (near, far) = (bearing_point(&pose, i, ROBOT_RADIUS + 3.0), bearing_point(&pose, i, ROBOT_RADIUS + 30.0));
+        let (near, far) = (bearing_point(&pose, i, ROBOT_RADIUS + 3.0), bearing_point(&pose, i, ROBOT_RADIUS + 18.0));
         let far = floor.at(far);
         floor.canvas.line(
             &[floor.at(near), far],
@@ -127,8 +127,14 @@ impl Floor {
             let along = Vec2::new(-door.normal.y, door.normal.x) * door.width / 2.0;
             let (a, b) = (self.at(door.centre - along), self.at(door.centre + along));
             self.canvas.dashes(a, b, GREY, 1.2, 3.0);
-            let beside = self.at(door.centre + door.normal * (door.depth / 2.0 + 10.0));
-            self.canvas.text(&format!("door {}", door.name), beside, 11.5, GREY, Anchor::Middle);
+            let (x, y) = self.at(door.centre + door.normal * door.depth / 2.0);
+            let label = format!("door {}", door.name);
+            if door.normal.x.abs() > door.normal.y.abs() {
+                let (gap, anchor) = if door.normal.x > 0.0 { (6.0, Anchor::Start) } else { (-6.0, Anchor::End) };
+                self.canvas.text(&label, (x + gap, y), 11.5, GREY, anchor);
+            } else {
+                self.canvas.text(&label, (x, y - 11.0 * f64::from(door.normal.y)), 11.5, GREY, Anchor::Middle);
+            }
         }
     }
 
