@@ -61,6 +61,8 @@ constants! {
     RECORD_WORDS = 10;
     /// Words that open a lesson: its length in steps, its end, whether it was taught, unused.
     LESSON_HEADER = 4;
+    /// Kinds of events that a reward can name.
+    EVENTS = 3;
     /// Words of one row of the trial table.
     ROW_WORDS = 8;
     /// Entries of a sonar coding table.
@@ -74,10 +76,10 @@ shared! {
         ax: f32,
         /// Start, inches.
         ay: f32,
-        /// End minus start, inches.
-        dx: f32,
-        /// End minus start, inches.
-        dy: f32,
+        /// End, inches.
+        bx: f32,
+        /// End, inches.
+        by: f32,
         /// Unit vector along the segment.
         tx: f32,
         /// Unit vector along the segment.
@@ -145,4 +147,321 @@ shared! {
         /// The doorways.
         doorway: [Doorway; MAX_DOORS],
     }
+
+    /// Noise of a robot, as passed to the functions that need it.
+    struct Noise {
+        /// Distribution of every term: 0 bell, 1 flat.
+        kind: u32,
+        /// Relative, turns and travel.
+        actuator: f32,
+        /// Relative, sonar ranges.
+        sonar: f32,
+        /// Relative, brightness.
+        light: f32,
+        /// Degrees, compass.
+        compass: f32,
+    }
+
+    /// A skill's shape: the same for every learner of a cohort.
+    struct SkillPlan {
+        /// Inputs of each net.
+        inputs: u32,
+        /// Rows of 32 weights of each net: one per input, hidden biases, output weights, output bias.
+        rows: u32,
+        /// Nets: one per child.
+        children: u32,
+        /// Input groups in use.
+        groups: u32,
+        /// Word of a learner's nets at which the skill's first net stands.
+        nets_offset: u32,
+        /// Word of a learner's nets at which the optimiser's clocks stand.
+        clock_offset: u32,
+        /// Words of one lesson slot.
+        lesson_stride: u32,
+        /// Word of a learner's lessons at which the skill's memory stands.
+        memory_offset: u32,
+        /// Word of the bank at which the skill's taught lessons stand.
+        bank_offset: u32,
+        /// Taught lessons in the bank.
+        bank_lessons: u32,
+        /// Start regions in use.
+        starts: u32,
+        /// Word of the atlas at which the cells of the test region stand.
+        tests_offset: u32,
+        /// Cells of the test region.
+        tests_count: u32,
+        /// Events that end a trial as achieved.
+        ends: u32,
+        /// Kind of each input group: 0 table of the sonar reading, 1 light, 2 bumpers, 3 compass.
+        group_kind: [u32; MAX_GROUPS],
+        /// First input of each group.
+        group_first: [u32; MAX_GROUPS],
+        /// Word of the atlas at which a sonar group's table stands.
+        group_table: [u32; MAX_GROUPS],
+        /// Action code of each child.
+        action: [u32; MAX_CHILDREN],
+        /// Share of the trials that start in this region or an earlier one.
+        start_share: [f32; MAX_STARTS],
+        /// Word of the atlas at which the region's cells stand.
+        start_offset: [u32; MAX_STARTS],
+        /// Cells of the region.
+        start_count: [u32; MAX_STARTS],
+    }
+
+    /// How one learner learns one skill: every number that an arm or a sweep can vary.
+    struct Settings {
+        /// Key shared by the run.
+        run_seed: u32,
+        /// Key of the learner.
+        learner_seed: u32,
+        /// Distribution of all noise: 0 bell, 1 flat.
+        noise_kind: u32,
+        /// Relative, turns and travel.
+        noise_actuator: f32,
+        /// Relative, sonar ranges.
+        noise_sonar: f32,
+        /// Relative, brightness.
+        noise_light: f32,
+        /// Degrees, compass.
+        noise_compass: f32,
+        /// Hidden units in use.
+        hidden: u32,
+        /// Initial weights lie in plus or minus this.
+        init: f32,
+        /// Discount factor.
+        gamma: f32,
+        /// Share of the observed return in the target.
+        lambda: f32,
+        /// 0 gradient descent with momentum, 1 Adam.
+        optimiser: u32,
+        /// Learning rate.
+        rate: f32,
+        /// Momentum, or Adam's decay of the mean gradient.
+        beta1: f32,
+        /// Adam's decay of the mean squared gradient.
+        beta2: f32,
+        /// Square of Adam's epsilon, added under the root.
+        epsilon2: f32,
+        /// 1 / the reward that is learned as Q = 1.
+        value_scale: f32,
+        /// Targets are clipped to plus or minus this.
+        target_limit: f32,
+        /// Inverse temperature at the first trial.
+        sharpness_start: f32,
+        /// Its rise per trial.
+        sharpness_slope: f32,
+        /// Trials over which it rises.
+        sharpness_trials: u32,
+        /// Least probability of a policy action.
+        policy_threshold: f32,
+        /// Remembered lessons replayed after each trial.
+        replays: u32,
+        /// Lessons remembered.
+        memory: u32,
+        /// Mean age of replayed lessons.
+        mean_age: f32,
+        /// -1 / `mean_age`.
+        age_decay: f32,
+        /// Passes over each taught lesson before the first trial.
+        taught_passes: u32,
+        /// Taught lessons replayed after each trial.
+        taught_replays: u32,
+        /// 1 where taught steps are policy actions whatever their probability.
+        taught_always: u32,
+        /// 1 where the step limit ends a trial with value 0.
+        timeout_terminal: u32,
+        /// 1 where a blocked action is not available on the next step.
+        mask_blocked: u32,
+        /// Taught lessons given.
+        lessons: u32,
+        /// Training trials.
+        trials: u32,
+        /// Step limit of a trial.
+        max_steps: u32,
+        /// Amount paid for each event.
+        reward: [f32; EVENTS],
+    }
+
+    /// Where a learner stands: all that changes from one quantum to the next, but nets and lessons.
+    struct Cursor {
+        /// One of the `PHASE` codes.
+        phase: u32,
+        /// Skill in training.
+        skill: u32,
+        /// Trials of it finished.
+        trial: u32,
+        /// Steps of the trial taken.
+        step: u32,
+        /// Inches.
+        x: f32,
+        /// Inches.
+        y: f32,
+        /// Degrees.
+        heading: f32,
+        /// Touching bumpers.
+        bumpers: u32,
+        /// Child masked on the next step, or `NO_ACTION`.
+        masked: u32,
+        /// Room in which the trial began.
+        origin: u32,
+        /// Primitive actions executed so far, taught ones included.
+        actions: u32,
+        /// Reward of the trial so far.
+        reward: f32,
+        /// Collisions of the trial so far.
+        collisions: u32,
+        /// Lessons remembered so far, forgotten ones included.
+        remembered: u32,
+        /// Replays of this phase begun so far.
+        replay: u32,
+        /// 1 where the lesson in replay is a taught one.
+        replay_taught: u32,
+        /// Word of the bank or of the memory at which the lesson in replay stands.
+        replay_lesson: u32,
+        /// Steps of the lesson in replay that are still to be learned; 0 where none is.
+        replay_left: u32,
+        /// Greatest Q-value after the step to be learned.
+        next_best: f32,
+        /// Return after the step to be learned.
+        next_return: f32,
+        /// Rows of the trial table written.
+        rows: u32,
+        /// Transitions learned from so far.
+        updates: u32,
+        /// 1 where the observation that ends the lesson in replay is still to be valued.
+        replay_open: u32,
+        /// Keeps the size at 24 words.
+        padding: u32,
+    }
+
+    /// A test trial.
+    struct Episode {
+        /// Inches.
+        x: f32,
+        /// Inches.
+        y: f32,
+        /// Degrees.
+        heading: f32,
+        /// Touching bumpers.
+        bumpers: u32,
+        /// Steps taken.
+        step: u32,
+        /// Child masked on the next step, or `NO_ACTION`.
+        masked: u32,
+        /// Room in which the trial began.
+        origin: u32,
+        /// 0 not begun, 1 running, 2 achieved, 3 cut.
+        state: u32,
+        /// Reward so far.
+        reward: f32,
+        /// Collisions so far.
+        collisions: u32,
+        /// Where it began, inches.
+        start_x: f32,
+        /// Where it began, inches.
+        start_y: f32,
+    }
+
+    /// A robot under given actions.
+    struct Robot {
+        /// Inches.
+        x: f32,
+        /// Inches.
+        y: f32,
+        /// Degrees.
+        heading: f32,
+        /// Touching bumpers.
+        bumpers: u32,
+        /// Action to carry out, or `NO_ACTION` to sense only.
+        action: u32,
+        /// Events of the action.
+        events: u32,
+        /// Steps taken, which picks the random numbers.
+        step: u32,
+        /// Key shared by the run.
+        run_seed: u32,
+        /// Key of the robot.
+        robot_seed: u32,
+        /// Distribution of all noise: 0 bell, 1 flat.
+        noise_kind: u32,
+        /// Relative, turns and travel.
+        noise_actuator: f32,
+        /// Relative, sonar ranges.
+        noise_sonar: f32,
+        /// Relative, brightness.
+        noise_light: f32,
+        /// Degrees, compass.
+        noise_compass: f32,
+        /// What it senses after the action: the first words of a record.
+        record: [u32; RECORD_WORDS],
+    }
+
+    /// What the host tells one dispatch.
+    struct Dispatch {
+        /// Most quanta of each learner, episode or robot.
+        quanta: u32,
+        /// Learners stop before the first trial beyond this skill and trial.
+        stop_skill: u32,
+        /// See `stop_skill`.
+        stop_trial: u32,
+        /// Skills of each learner.
+        skills: u32,
+        /// Words of one learner's nets.
+        nets_stride: u32,
+        /// Words of one learner's lessons.
+        lessons_stride: u32,
+        /// Words of one learner's trial rows.
+        rows_stride: u32,
+        /// Learners, or robots, in the buffers.
+        learners: u32,
+        /// Episodes of each learner.
+        episodes: u32,
+        /// Skill under test.
+        test_skill: u32,
+        /// Test trials: the counter that keeps the tests' random numbers apart.
+        test_number: u32,
+        /// First learner of this dispatch.
+        first: u32,
+    }
 }
+
+/// The text that opens every shader: constants, random purposes and structs.
+pub fn prelude() -> String {
+    use std::fmt::Write;
+    let mut text = String::new();
+    for (name, value) in CONSTANTS {
+        let _ = writeln!(text, "const {name}: u32 = {value}u;");
+    }
+    for (name, purpose) in crate::math::rng::PURPOSES {
+        let _ = writeln!(text, "const {name}: u32 = {}u;", *purpose as u32);
+    }
+    for (name, phase) in PHASES {
+        let _ = writeln!(text, "const {name}: u32 = {phase}u;");
+    }
+    for declaration in STRUCTS {
+        text.push_str(declaration);
+    }
+    text
+}
+
+/// Learning from the taught lessons before the first trial.
+pub const PHASE_TEACH: u32 = 0;
+/// About to begin a trial; where learners wait for a test.
+pub const PHASE_START: u32 = 1;
+/// In a trial.
+pub const PHASE_ACT: u32 = 2;
+/// Replaying after a trial.
+pub const PHASE_REPLAY: u32 = 3;
+/// All skills trained.
+pub const PHASE_DONE: u32 = 4;
+/// Frozen: a number stopped being finite.
+pub const PHASE_FAILED: u32 = 5;
+/// Name and code of every phase.
+pub const PHASES: &[(&str, u32)] = &[
+    ("PHASE_TEACH", PHASE_TEACH),
+    ("PHASE_START", PHASE_START),
+    ("PHASE_ACT", PHASE_ACT),
+    ("PHASE_REPLAY", PHASE_REPLAY),
+    ("PHASE_DONE", PHASE_DONE),
+    ("PHASE_FAILED", PHASE_FAILED),
+];

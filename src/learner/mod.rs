@@ -1,2 +1,4 @@
-//! The memory of a learner.
+//! The memory of a learner: layout, sizes and views.
+
 pub mod layout;
+pub mod memory;

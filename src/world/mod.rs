@@ -3,6 +3,13 @@
 //! Inches, x right, y up; headings in degrees, 0 = east, counter-clockwise.
 
 pub mod atlas;
+mod check;
+pub mod geometry;
+pub mod load;
+pub mod regions;
+
+pub use atlas::Atlas;
+pub use load::{load, parse};
 
 use glam::Vec2;
 
@@ -100,9 +107,10 @@ pub struct World {
     pub name: String,
     /// Outer size in inches.
     pub size: Vec2,
-    /// Everything solid: the outer walls first, then walls, boxes and the charger in the file's order.
+    /// Everything solid: the outer walls first, then walls, boxes and the charger in the file's order. Edges of
+    /// boxes that nothing can touch or see, against the outer walls or inside other boxes, are left out.
     pub segments: Vec<Segment>,
-    /// Solid boxes, for drawing and for finding free space.
+    /// Solid boxes in the file's order, without the charger: for drawing and for finding free space.
     pub boxes: Vec<Rect>,
     /// At least one.
     pub rooms: Vec<Room>,
@@ -114,4 +122,6 @@ pub struct World {
     pub light: Option<Light>,
     /// Named poses, in the file's order.
     pub places: Vec<(String, Pose)>,
+    /// Start regions that the file names itself, in its order.
+    pub regions: Vec<(String, Rect)>,
 }

@@ -1,0 +1,177 @@
+// Kernel `advance`: moves a learner on by a number of quanta. A quantum is one trial step, one replayed
+// transition, or one change of phase.
+//
+// The learner is a state machine whose whole state is in its cursor, so it makes no difference how often
+// it is interrupted. Every lane keeps the same copy of the cursor.
+
+@group(0) @binding(0) var<uniform> dispatch: Dispatch;
+@group(0) @binding(1) var<uniform> world: WorldPlan;
+@group(0) @binding(2) var<storage, read> atlas: array<u32>;
+@group(0) @binding(3) var<storage, read> skills: array<SkillPlan>;
+@group(0) @binding(4) var<storage, read> bank: array<u32>;
+@group(0) @binding(5) var<storage, read> settings: array<Settings>;
+@group(0) @binding(6) var<storage, read_write> cursors: array<Cursor>;
+@group(0) @binding(7) var<storage, read_write> nets: array<f32>;
+@group(0) @binding(8) var<storage, read_write> lessons: array<u32>;
+@group(0) @binding(9) var<storage, read_write> rows: array<u32>;
+
+var<private> cursor: Cursor;
+var<private> rows_base: u32;
+var<private> lessons_base: u32;
+
+fn stopped() -> bool {
+    let beyond = cursor.skill > dispatch.stop_skill && cursor.phase <= PHASE_START;
+    let reached = cursor.skill == dispatch.stop_skill
+        && cursor.phase == PHASE_START
+        && cursor.trial >= dispatch.stop_trial;
+    return beyond || reached || cursor.phase >= PHASE_DONE;
+}
+
+fn teach(lane: u32, s: u32, base: u32) {
+    let begun = cursor.replay;
+    let finished = cursor.replay_left == 0u && cursor.replay_open == 0u;
+    if finished && begun >= settings[s].taught_passes * settings[s].lessons {
+        cursor.phase = PHASE_START;
+    } else {
+        if finished {
+            let number = begun % settings[s].lessons;
+            let lesson = taught_lesson(s, number);
+            begin_replay(s, lesson, 1u);
+            if begun < settings[s].lessons {
+                let steps = lesson_word(0u);
+                let end = lesson_word(1u);
+                let reward = bitcast<f32>(lesson_word(2u));
+                let collisions = lesson_word(3u);
+                cursor.actions += steps;
+                write_row(lane, number, steps, reward, end, collisions, 1u);
+            }
+        }
+        replay_step(lane, s, base);
+    }
+}
+
+fn start(s: u32) {
+    if cursor.trial >= settings[s].trials {
+        cursor.skill += 1u;
+        cursor.trial = 0u;
+        cursor.remembered = 0u;
+        cursor.replay = 0u;
+        cursor.phase = select(PHASE_DONE, PHASE_TEACH, cursor.skill < dispatch.skills);
+    } else {
+        let skill = cursor.skill;
+        let key = vec2<u32>(settings[s].run_seed, settings[s].learner_seed);
+        let stream = Stream(key, skill, cursor.trial, 0u, PURPOSE_START);
+        let words = draw(stream, 0u);
+        let region = start_region(skill, words.x);
+        let pose = start_pose(skills[skill].start_offset[region], skills[skill].start_count[region], words);
+        cursor.x = pose.x;
+        cursor.y = pose.y;
+        cursor.heading = pose.heading;
+        cursor.bumpers = 0u;
+        cursor.masked = NO_ACTION;
+        cursor.origin = room_of(pose.x, pose.y);
+        cursor.step = 0u;
+        cursor.reward = 0.0f;
+        cursor.collisions = 0u;
+        cursor.phase = PHASE_ACT;
+    }
+}
+
+fn act(lane: u32, s: u32, base: u32) {
+    let skill = cursor.skill;
+    let terms = noise_of(s);
+    let key = vec2<u32>(settings[s].run_seed, settings[s].learner_seed);
+    var stream = Stream(key, skill, cursor.trial, cursor.step, PURPOSE_STEP);
+    let slot = cursor.remembered % settings[s].memory;
+    let lesson = lessons_base + skills[skill].memory_offset + slot * skills[skill].lesson_stride;
+    roll(lane, stream);
+    let x = cursor.x;
+    let y = cursor.y;
+    let heading = cursor.heading;
+    observe(lane, x, y, heading, cursor.bumpers, terms);
+    encode(lane, skill);
+    forward(lane, skill, base);
+    let outlook = weigh(lane, skills[skill].children, cursor.masked, sharpness(s, cursor.trial));
+    let child = pick(outlook, dice[DICE_CHOICE].x);
+    let slip = terms.actuator * noise(terms.kind, dice[DICE_ACTUATOR].x, dice[DICE_ACTUATOR].y) + 1.0f;
+    let moved = move_body(lane, x, y, heading, skills[skill].action[child], slip);
+    let events = moved.events | passed_door(cursor.origin, moved.x, moved.y);
+    let reward = reward_of(s, events);
+    note(lane, child, cursor.masked, events, reward);
+    write_record(lane, lesson, cursor.step);
+    let hit = (events & COLLISION) == COLLISION;
+    cursor.x = moved.x;
+    cursor.y = moved.y;
+    cursor.heading = moved.heading;
+    cursor.bumpers = moved.bumpers;
+    cursor.masked = select(NO_ACTION, child, hit && settings[s].mask_blocked == 1u);
+    cursor.step += 1u;
+    cursor.actions += 1u;
+    cursor.reward = cursor.reward + reward;
+    cursor.collisions += u32(hit);
+    let achieved = (events & skills[skill].ends) != 0u;
+    if achieved || cursor.step >= settings[s].max_steps {
+        let end = select(CUT, ENDED, achieved);
+        stream.step = cursor.step;
+        roll(lane, stream);
+        observe(lane, moved.x, moved.y, moved.heading, moved.bumpers, terms);
+        note(lane, NO_ACTION, cursor.masked, 0u, 0.0f);
+        write_record(lane, lesson, cursor.step);
+        write_header(lane, lesson, cursor.step, end, cursor.reward, cursor.collisions);
+        write_row(lane, cursor.trial, cursor.step, cursor.reward, end, cursor.collisions, 0u);
+        cursor.remembered += 1u;
+        cursor.replay = 0u;
+        cursor.phase = PHASE_REPLAY;
+    }
+}
+
+fn replay(lane: u32, s: u32, base: u32) {
+    let begun = cursor.replay;
+    let taught = select(0u, settings[s].taught_replays, settings[s].lessons > 0u);
+    let finished = cursor.replay_left == 0u && cursor.replay_open == 0u;
+    if finished && begun >= taught + settings[s].replays {
+        cursor.trial += 1u;
+        cursor.phase = PHASE_START;
+    } else {
+        if finished {
+            let key = vec2<u32>(settings[s].run_seed, settings[s].learner_seed);
+            let stream = Stream(key, cursor.skill, cursor.trial, begun, PURPOSE_REPLAY);
+            let word = draw(stream, 0u).x;
+            if begun < taught {
+                let lesson = taught_lesson(s, below(word, settings[s].lessons));
+                begin_replay(s, lesson, 1u);
+            } else {
+                let lesson = lessons_base + recent_lesson(s, word);
+                begin_replay(s, lesson, 0u);
+            }
+        }
+        replay_step(lane, s, base);
+    }
+}
+
+@compute @workgroup_size(LANES)
+fn advance(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+    let learner = dispatch.first + group.x;
+    cursor = cursors[learner];
+    rows_base = learner * dispatch.rows_stride;
+    lessons_base = learner * dispatch.lessons_stride;
+    let base = learner * dispatch.nets_stride;
+    for (var quantum = 0u; quantum < dispatch.quanta; quantum++) {
+        if stopped() {
+            break;
+        }
+        let s = learner * dispatch.skills + cursor.skill;
+        if cursor.phase == PHASE_TEACH {
+            teach(lane, s, base);
+        } else if cursor.phase == PHASE_START {
+            start(s);
+        } else if cursor.phase == PHASE_ACT {
+            act(lane, s, base);
+        } else {
+            replay(lane, s, base);
+        }
+    }
+    if lane == 0u {
+        cursors[learner] = cursor;
+    }
+}

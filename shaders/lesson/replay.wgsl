@@ -1,0 +1,91 @@
+// Backward replay with TD(lambda) (paper, section I).
+//
+// From the last step to the first: u_t = r_t + gamma [(1 - lambda) max_k Q(x_{t+1}, k) + lambda u_{t+1}], the
+// bracket 0 at a goal. A step whose action the current policy would hardly take is not learned, and cuts
+// the chain: there max Q stands for u. The form is recalled from Lin's other papers, so it is our choice.
+
+fn taught_lesson(s: u32, number: u32) -> u32 {
+    let skill = cursor.skill;
+    let key = vec2<u32>(settings[s].run_seed, settings[s].learner_seed);
+    let stream = Stream(key, cursor.skill, number, 0u, PURPOSE_LESSON);
+    let stratum = skills[skill].bank_lessons / settings[s].lessons;
+    let index = number * stratum + below(draw(stream, 0u).x, stratum);
+    return skills[skill].bank_offset + index * skills[skill].lesson_stride;
+}
+
+fn recent_lesson(s: u32, word: u32) -> u32 {
+    let skill = cursor.skill;
+    let kept = select(settings[s].memory, cursor.remembered, cursor.remembered < settings[s].memory);
+    // The host sends the negative inverse of the mean age: kernels do not divide.
+    let whole = 1.0f - exponential(settings[s].age_decay * f32(kept));
+    let depth = -ln(1.0f - unit(word) * whole) * settings[s].mean_age;
+    let drawn = u32(depth);
+    let age = select(kept - 1u, drawn, drawn < kept);
+    let slot = (cursor.remembered - 1u - age) % settings[s].memory;
+    return skills[skill].memory_offset + slot * skills[skill].lesson_stride;
+}
+
+fn lesson_word(offset: u32) -> u32 {
+    let at = cursor.replay_lesson + offset;
+    if cursor.replay_taught == 1u {
+        return bank[at];
+    }
+    return lessons[at];
+}
+
+fn begin_replay(s: u32, lesson: u32, taught: u32) {
+    cursor.replay_lesson = lesson;
+    cursor.replay_taught = taught;
+    let steps = lesson_word(0u);
+    let end = lesson_word(1u);
+    cursor.replay += 1u;
+    cursor.replay_left = steps;
+    cursor.replay_open = u32(end == CUT && settings[s].timeout_terminal == 0u);
+    cursor.next_best = 0.0f;
+    cursor.next_return = 0.0f;
+}
+
+fn load_record(lane: u32, step: u32) {
+    let offset = LESSON_HEADER + step * RECORD_WORDS;
+    workgroupBarrier();
+    if lane < RECORD_WORDS {
+        record[lane] = lesson_word(offset + lane);
+    }
+    workgroupBarrier();
+}
+
+fn replay_step(lane: u32, s: u32, base: u32) {
+    let skill = cursor.skill;
+    let open = cursor.replay_open == 1u;
+    let step = select(cursor.replay_left - 1u, cursor.replay_left, open);
+    load_record(lane, step);
+    encode(lane, skill);
+    forward(lane, skill, base);
+    let child = record[8] & 0xffu;
+    let masked = (record[8] >> 8u) & 0xffu;
+    let outlook = weigh(lane, skills[skill].children, masked, sharpness(s, cursor.trial));
+    if open {
+        cursor.replay_open = 0u;
+        cursor.next_best = outlook.best;
+        cursor.next_return = outlook.best;
+    } else {
+        let reward = bitcast<f32>(record[9]) * settings[s].value_scale;
+        let future = (1.0f - settings[s].lambda) * cursor.next_best + settings[s].lambda * cursor.next_return;
+        let aim = reward + settings[s].gamma * future;
+        let low = select(-settings[s].target_limit, aim, aim > -settings[s].target_limit);
+        let goal = select(settings[s].target_limit, low, low < settings[s].target_limit);
+        let taught = settings[s].taught_always == 1u && cursor.replay_taught == 1u;
+        let policy = taught || odds[child] > settings[s].policy_threshold * outlook.total;
+        let delta = goal - q[child];
+        // All exponent bits set: the number stopped being finite.
+        if (bitcast<u32>(delta) & 0x7f800000u) == 0x7f800000u {
+            cursor.phase = PHASE_FAILED;
+        } else if policy {
+            backward(lane, skill, s, base, child, delta);
+            cursor.updates += 1u;
+        }
+        cursor.next_best = outlook.best;
+        cursor.next_return = select(outlook.best, goal, policy);
+        cursor.replay_left = step;
+    }
+}

@@ -1,0 +1,73 @@
+// One step of error back-propagation through one child's net (paper, section I, step 2).
+
+const CLOCK_SECOND: u32 = 16u;
+
+struct Errors {
+    output: f32,
+    hidden: f32,
+}
+
+fn errors(lane: u32, skill: u32, net: u32, child: u32, delta: f32) -> Errors {
+    let value = q[child];
+    let output = delta * (1.0f - value * value);
+    let active = hidden[child][lane];
+    let weight = nets[net + (skills[skill].inputs + 1u) * LANES + lane];
+    return Errors(output, output * weight * (1.0f - active * active));
+}
+
+fn gradient(lane: u32, skill: u32, child: u32, row: u32, errors: Errors) -> f32 {
+    let count = skills[skill].inputs;
+    var slope = errors.hidden;
+    if row < count {
+        slope = errors.hidden * inputs[row];
+    }
+    if row == count + 1u {
+        slope = errors.output * hidden[child][lane];
+    }
+    if row == count + 2u {
+        slope = select(0.0f, errors.output, lane == 0u);
+    }
+    return slope;
+}
+
+fn backward(lane: u32, skill: u32, s: u32, base: u32, child: u32, delta: f32) {
+    let net = net_of(skill, base, child);
+    let slab = skills[skill].rows * LANES;
+    let found = errors(lane, skill, net, child, delta);
+    if settings[s].optimiser == 1u {
+        // Adam (Kingma and Ba, 2015) in its second form, with epsilon under the root: one reciprocal root
+        // serves where a root and a division would.
+        let clock = base + skills[skill].clock_offset + child;
+        let first = flush(nets[clock] * settings[s].beta1);
+        let second = flush(nets[clock + CLOCK_SECOND] * settings[s].beta2);
+        let rate = settings[s].rate * square_root(1.0f - second) * reciprocal(1.0f - first);
+        storageBarrier();
+        workgroupBarrier();
+        if lane == 0u {
+            nets[clock] = first;
+            nets[clock + CLOCK_SECOND] = second;
+        }
+        let rest1 = 1.0f - settings[s].beta1;
+        let rest2 = 1.0f - settings[s].beta2;
+        for (var row = 0u; row < skills[skill].rows; row++) {
+            let at = net + row * LANES + lane;
+            let g = gradient(lane, skill, child, row, found);
+            let mean = flush(settings[s].beta1 * nets[at + slab] + rest1 * g);
+            let square = flush(settings[s].beta2 * nets[at + 2u * slab] + rest2 * (g * g));
+            nets[at + slab] = mean;
+            nets[at + 2u * slab] = square;
+            nets[at] = nets[at] + rate * mean * reciprocal_sqrt(square + settings[s].epsilon2);
+        }
+    } else {
+        for (var row = 0u; row < skills[skill].rows; row++) {
+            let at = net + row * LANES + lane;
+            let g = gradient(lane, skill, child, row, found);
+            let velocity = flush(settings[s].beta1 * nets[at + slab] + settings[s].rate * g);
+            nets[at + slab] = velocity;
+            nets[at] = nets[at] + velocity;
+        }
+    }
+    // The output bias and the clocks are read by other lanes than the one that wrote them.
+    storageBarrier();
+    workgroupBarrier();
+}

@@ -1,0 +1,103 @@
+// Contact of the disc with the segments: how far a move gets, and what touches the bumpers.
+//
+// Lanes are segments. Contact with a segment is contact with its line between the ends, or with one of
+// its two end points; both are quadratic-free or a single square root.
+
+const RADIUS: f32 = 12.0f;
+const INVERSE_RADIUS: f32 = 0.083333336f;
+const BUMPER_GAP: f32 = 0.4f;
+const FAR: f32 = 1.0e6f;
+const STILL: f32 = 1.0e-7f;
+
+struct Travel {
+    distance: f32,
+    blocked: bool,
+    connected: bool,
+}
+
+// Distance to contact with one segment, and the cosine between the travel and the contact point.
+fn contact(i: u32, x: f32, y: f32, ux: f32, uy: f32) -> vec2<f32> {
+    let wx = x - world.segment[i].ax;
+    let wy = y - world.segment[i].ay;
+    let tx = world.segment[i].tx;
+    let ty = world.segment[i].ty;
+    let length = world.segment[i].length;
+    // The line between the ends: the gap closes at a constant rate.
+    let side = tx * wy - ty * wx;
+    let drift = tx * uy - ty * ux;
+    let closing = select(-drift, drift, side < 0.0f);
+    let rate = select(STILL, closing, closing > STILL);
+    let gap = (abs(side) - RADIUS) * reciprocal(rate);
+    let line_reach = select(0.0f, gap, gap > 0.0f);
+    let along = (tx * wx + ty * wy) + (tx * ux + ty * uy) * line_reach;
+    let line_hit = closing > STILL && along >= 0.0f && along <= length;
+    var reach = select(FAR, line_reach, line_hit);
+    var cosine = closing;
+    // The end points: the disc's rim meets a point.
+    let ex = world.segment[i].bx - x;
+    let ey = world.segment[i].by - y;
+    let ahead_a = -wx * ux - wy * uy;
+    let across_a = wx * uy - wy * ux;
+    let chord_a = RADIUS * RADIUS - across_a * across_a;
+    let back_a = square_root(chord_a);
+    let gap_a = ahead_a - back_a;
+    let reach_a = select(0.0f, gap_a, gap_a > 0.0f);
+    let hit_a = chord_a > 0.0f && ahead_a > 0.0f && length >= 0.0f && reach_a < reach;
+    cosine = select(cosine, back_a * INVERSE_RADIUS, hit_a);
+    reach = select(reach, reach_a, hit_a);
+    let ahead_b = ex * ux + ey * uy;
+    let across_b = ex * uy - ey * ux;
+    let chord_b = RADIUS * RADIUS - across_b * across_b;
+    let back_b = square_root(chord_b);
+    let gap_b = ahead_b - back_b;
+    let reach_b = select(0.0f, gap_b, gap_b > 0.0f);
+    let hit_b = chord_b > 0.0f && ahead_b > 0.0f && length >= 0.0f && reach_b < reach;
+    cosine = select(cosine, back_b * INVERSE_RADIUS, hit_b);
+    reach = select(reach, reach_b, hit_b);
+    return vec2<f32>(reach, cosine);
+}
+
+fn sweep(lane: u32, x: f32, y: f32, ux: f32, uy: f32, reach: f32) -> Travel {
+    var nearest = FAR;
+    var charger = 0u;
+    for (var first = 0u; first < world.segments; first += LANES) {
+        let i = first + lane;
+        if i < world.segments {
+            let hit = contact(i, x, y, ux, uy);
+            let closer = hit.x < nearest;
+            let plug = world.segment[i].charger == 1u && hit.y >= world.dock_cosine;
+            charger = select(charger, u32(plug), closer);
+            nearest = select(nearest, hit.x, closer);
+        }
+    }
+    let least = lanes_min(lane, nearest);
+    let plugged = lanes_or(lane, select(0u, charger, nearest == least));
+    let blocked = least < reach;
+    return Travel(select(reach, least, blocked), blocked, blocked && plugged == 1u);
+}
+
+fn bumpers(lane: u32, x: f32, y: f32, cosine: f32, sine: f32) -> u32 {
+    var bits = 0u;
+    for (var first = 0u; first < world.segments; first += LANES) {
+        let i = first + lane;
+        if i < world.segments {
+            let wx = x - world.segment[i].ax;
+            let wy = y - world.segment[i].ay;
+            let tx = world.segment[i].tx;
+            let ty = world.segment[i].ty;
+            let length = world.segment[i].length;
+            let foot = tx * wx + ty * wy;
+            let low = select(0.0f, foot, foot > 0.0f);
+            let along = select(length, low, low < length);
+            let px = tx * along - wx;
+            let py = ty * along - wy;
+            let near = px * px + py * py < (RADIUS + BUMPER_GAP) * (RADIUS + BUMPER_GAP) && length >= 0.0f;
+            let front = px * cosine + py * sine;
+            let left = py * cosine - px * sine;
+            let lengthwise = abs(front) >= abs(left);
+            let sector = select(select(8u, 2u, left > 0.0f), select(4u, 1u, front > 0.0f), lengthwise);
+            bits |= select(0u, sector, near);
+        }
+    }
+    return lanes_or(lane, bits);
+}

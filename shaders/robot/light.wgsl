@@ -1,0 +1,46 @@
+// The rotating light sensor: 24 bits, lit where the charger's light is bright enough on that bearing.
+//
+// Brightness = (range / d)^2 exp(k (cos(angle off the light) - 1)), k = 1 / (15 degrees)^2, in line of
+// sight only. Our choice: the paper states 24 binary readings and no more. Near the charger several
+// bearings are lit, far away one.
+
+const SHARPNESS: f32 = 14.59025f;
+
+fn in_sight(lane: u32, x: f32, y: f32) -> bool {
+    let lx = world.light_x - x;
+    let ly = world.light_y - y;
+    var hidden = 0u;
+    for (var first = 0u; first < world.segments; first += LANES) {
+        let i = first + lane;
+        if i < world.segments {
+            let ax = world.segment[i].ax - x;
+            let ay = world.segment[i].ay - y;
+            let bx = world.segment[i].bx - x;
+            let by = world.segment[i].by - y;
+            let dx = world.segment[i].bx - world.segment[i].ax;
+            let dy = world.segment[i].by - world.segment[i].ay;
+            let over = ax * dy - ay * dx;
+            let under = lx * dy - ly * dx;
+            let side_a = ax * ly - ay * lx;
+            let side_b = bx * ly - by * lx;
+            let crosses = (side_a > 0.0f) != (side_b > 0.0f);
+            let over_signed = select(over, -over, under < 0.0f);
+            let between = over_signed >= 0.0f && over_signed < abs(under);
+            let solid = world.segment[i].charger == 0u && world.segment[i].length >= 0.0f;
+            hidden |= u32(crosses && between && solid);
+        }
+    }
+    return lanes_or(lane, hidden) == 0u;
+}
+
+fn brightness(x: f32, y: f32, ux: f32, uy: f32) -> f32 {
+    let lx = world.light_x - x;
+    let ly = world.light_y - y;
+    let square = lx * lx + ly * ly;
+    // The light itself is out of the robot's reach; the bound keeps the functions in their range.
+    let distance2 = select(1.0f, square, square > 1.0f);
+    let nearness = reciprocal_sqrt(distance2);
+    let falloff = world.light_range2 * reciprocal(distance2);
+    let aim = (ux * lx + uy * ly) * nearness;
+    return falloff * exponential(SHARPNESS * (aim - 1.0f));
+}

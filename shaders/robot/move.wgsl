@@ -1,0 +1,44 @@
+// The six actions: noisy turns in place and noisy travel that stops at contact.
+
+const DOCKED: u32 = 1u;
+const COLLISION: u32 = 2u;
+const PASSED_DOOR: u32 = 4u;
+const FORWARD: u32 = 4u;
+const BACKWARD: u32 = 5u;
+const NO_ACTION: u32 = 255u;
+
+struct Moved {
+    x: f32,
+    y: f32,
+    heading: f32,
+    bumpers: u32,
+    events: u32,
+}
+
+fn turn_of(action: u32) -> f32 {
+    let size = select(60.0f, 15.0f, action < 2u);
+    let signed = select(size, -size, (action & 1u) == 1u);
+    return select(0.0f, signed, action < FORWARD);
+}
+
+fn move_body(lane: u32, x: f32, y: f32, heading: f32, action: u32, slip: f32) -> Moved {
+    let turned = wrap_degrees(heading + turn_of(action) * slip);
+    let turn = sin_cos(turned);
+    let sine = turn.x;
+    let cosine = turn.y;
+    var moved = Moved(x, y, turned, 0u, 0u);
+    if action == FORWARD || action == BACKWARD {
+        let ux = select(-cosine, cosine, action == FORWARD);
+        let uy = select(-sine, sine, action == FORWARD);
+        let wanted = 12.0f * slip;
+        let reach = select(0.0f, wanted, wanted > 0.0f);
+        let travel = sweep(lane, x, y, ux, uy, reach);
+        moved.x = x + ux * travel.distance;
+        moved.y = y + uy * travel.distance;
+        let docked = travel.connected && action == FORWARD;
+        let stopped = select(0u, COLLISION, travel.blocked);
+        moved.events = select(stopped, DOCKED, docked);
+    }
+    moved.bumpers = bumpers(lane, moved.x, moved.y, cosine, sine);
+    return moved;
+}

@@ -1,0 +1,75 @@
+// One reading of all sensors, packed into a record, and a record's encoding as inputs of a net.
+//
+// A record's words: 0 to 5 the 24 sonar readings, a byte each; 6 the light bits and, from bit 24, the
+// bumpers; 7 the compass; 8 what was done (see `lesson/record`); 9 the reward.
+
+const DICE_ACTUATOR: u32 = 24u;
+const DICE_COMPASS: u32 = 25u;
+const DICE_CHOICE: u32 = 26u;
+const GROUP_SONAR: u32 = 0u;
+const GROUP_LIGHT: u32 = 1u;
+const GROUP_BUMPERS: u32 = 2u;
+const GROUP_COMPASS: u32 = 3u;
+
+var<workgroup> record: array<u32, RECORD_WORDS>;
+var<workgroup> readings: array<u32, LANES>;
+var<workgroup> inputs: array<f32, MAX_INPUTS>;
+
+fn observe(lane: u32, x: f32, y: f32, heading: f32, bumpers: u32, terms: Noise) {
+    let turn = sin_cos(heading);
+    let u = rays(lane, turn.y, turn.x);
+    let range = ranges(x, y, u.x, u.y);
+    let error = terms.sonar * noise(terms.kind, dice[lane].x, dice[lane].y) + 1.0f;
+    readings[lane] = reading(range, error);
+    var lit = 0u;
+    if world.lit == 1u {
+        let seen = in_sight(lane, x, y);
+        let bright = brightness(x, y, u.x, u.y);
+        let glow = bright * (terms.light * noise(terms.kind, dice[lane].z, dice[lane].w) + 1.0f);
+        lit = lanes_or(lane, select(0u, 1u << lane, seen && glow > 1.0f && lane < RAYS));
+    }
+    workgroupBarrier();
+    if lane < 6u {
+        record[lane] = readings[lane * 4u]
+            | (readings[lane * 4u + 1u] << 8u)
+            | (readings[lane * 4u + 2u] << 16u)
+            | (readings[lane * 4u + 3u] << 24u);
+    }
+    if lane == 6u {
+        record[6] = lit | (bumpers << 24u);
+    }
+    if lane == 7u {
+        let error = noise(terms.kind, dice[DICE_COMPASS].x, dice[DICE_COMPASS].y);
+        record[7] = bitcast<u32>(wrap_degrees(heading + terms.compass * error));
+    }
+    workgroupBarrier();
+}
+
+fn encode(lane: u32, skill: u32) {
+    for (var group = 0u; group < skills[skill].groups; group++) {
+        let kind = skills[skill].group_kind[group];
+        let first = skills[skill].group_first[group];
+        if kind == GROUP_SONAR {
+            let table = skills[skill].group_table[group];
+            if lane < RAYS {
+                let byte = (record[lane / 4u] >> (8u * (lane % 4u))) & 0xffu;
+                inputs[first + lane] = bitcast<f32>(atlas[table + byte]);
+            }
+        } else if kind == GROUP_LIGHT {
+            if lane < RAYS {
+                inputs[first + lane] = f32((record[6] >> lane) & 1u);
+            }
+        } else if kind == GROUP_BUMPERS {
+            if lane < 4u {
+                inputs[first + lane] = f32((record[6] >> (24u + lane)) & 1u);
+            }
+        } else {
+            let turn = sin_cos(bitcast<f32>(record[7]));
+            if lane == 0u {
+                inputs[first] = turn.y;
+                inputs[first + 1u] = turn.x;
+            }
+        }
+    }
+    workgroupBarrier();
+}

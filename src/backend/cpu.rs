@@ -1,0 +1,225 @@
+//! The CPU backend: the twins, one thread per learner at a time, lanes vectorised for this machine.
+//!
+//! The twins are plain arithmetic without fused operations, so the instruction set they are compiled for
+//! changes their speed and not their bytes.
+
+use super::{Backend, BackendError, Cohort, Stop, Test};
+use crate::advance::advance;
+use crate::evaluate::{STATE_CUT, STATE_FRESH, evaluate};
+use crate::learner::layout::{Cursor, Dispatch, Episode, Robot};
+use crate::learner::memory::{Learner, Shared};
+use crate::step::step;
+use bytemuck::Zeroable;
+use rayon::prelude::*;
+
+/// Quanta of one learner between two looks at the clock: some 10 ms.
+const QUANTA: u32 = 16_384;
+
+/// Executes the twins on a pool of threads.
+#[derive(Debug)]
+pub struct CpuBackend {
+    pool: rayon::ThreadPool,
+    instructions: Instructions,
+    quanta: u32,
+    cohort: Option<Cohort>,
+}
+
+/// Widest vector instructions that the twins are compiled for and this machine has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Instructions {
+    Baseline,
+    #[cfg(target_arch = "x86_64")]
+    Avx2,
+    #[cfg(target_arch = "x86_64")]
+    Avx512,
+}
+
+impl Instructions {
+    fn detect() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        {
+            if is_x86_feature_detected!("avx512f")
+                && is_x86_feature_detected!("avx512vl")
+                && is_x86_feature_detected!("avx512dq")
+                && is_x86_feature_detected!("avx512bw")
+            {
+                return Self::Avx512;
+            }
+            if is_x86_feature_detected!("avx2") {
+                return Self::Avx2;
+            }
+        }
+        Self::Baseline
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Baseline => "baseline",
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => "AVX2",
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => "AVX-512",
+        }
+    }
+}
+
+/// Declares a function that runs a twin compiled for each instruction set.
+macro_rules! dispatched {
+    ($(#[$doc:meta])* $name:ident, $avx2:ident, $avx512:ident = $twin:ident($($argument:ident: $kind:ty),*)) => {
+        #[cfg(target_arch = "x86_64")]
+        #[target_feature(enable = "avx2")]
+        fn $avx2($($argument: $kind),*) {
+            $twin($($argument),*);
+        }
+
+        #[cfg(target_arch = "x86_64")]
+        #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw")]
+        fn $avx512($($argument: $kind),*) {
+            $twin($($argument),*);
+        }
+
+        $(#[$doc])*
+        fn $name(instructions: Instructions, $($argument: $kind),*) {
+            match instructions {
+                Instructions::Baseline => $twin($($argument),*),
+                // SAFETY: `Instructions::detect` saw the features on this machine.
+                #[cfg(target_arch = "x86_64")]
+                Instructions::Avx2 => unsafe { $avx2($($argument),*) },
+                // SAFETY: as above.
+                #[cfg(target_arch = "x86_64")]
+                Instructions::Avx512 => unsafe { $avx512($($argument),*) },
+            }
+        }
+    };
+}
+
+dispatched! {
+    /// Runs [`advance`].
+    run_advance, advance_avx2, advance_avx512 = advance(learner: &mut Learner<'_>, dispatch: &Dispatch)
+}
+
+dispatched! {
+    /// Runs [`evaluate`].
+    run_evaluate, evaluate_avx2, evaluate_avx512 = evaluate(
+        episode: &mut Episode,
+        shared: &Shared,
+        settings: &crate::learner::layout::Settings,
+        nets: &[f32],
+        dispatch: &Dispatch,
+        number: u32
+    )
+}
+
+dispatched! {
+    /// Runs [`step`].
+    run_step, step_avx2, step_avx512 = step(robot: &mut Robot, shared: &Shared, dispatch: &Dispatch)
+}
+
+impl CpuBackend {
+    /// A backend on `threads` threads (0: one per core) that leaves each learner after `quanta` quanta, if
+    /// given.
+    ///
+    /// # Errors
+    /// Where the threads cannot be started.
+    pub fn new(threads: usize, quanta: Option<u32>) -> Result<Self, BackendError> {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| {
+            BackendError::Unavailable {
+                message: format!("cannot start {threads} threads: {error}"),
+                hint: "ask for fewer with `--threads N`".to_owned(),
+            }
+        })?;
+        let instructions = Instructions::detect();
+        Ok(Self { pool, instructions, quanta: quanta.unwrap_or(QUANTA), cohort: None })
+    }
+
+    fn loaded(&self) -> Result<&Cohort, BackendError> {
+        self.cohort.as_ref().ok_or_else(nothing_loaded)
+    }
+}
+
+fn nothing_loaded() -> BackendError {
+    BackendError::Device { kernel: "advance", message: "no cohort is loaded".to_owned() }
+}
+
+impl Backend for CpuBackend {
+    fn describe(&self) -> String {
+        let threads = self.pool.current_num_threads();
+        let s = if threads == 1 { "" } else { "s" };
+        format!("cpu ({threads} thread{s}, {})", self.instructions.name())
+    }
+
+    fn load(&mut self, cohort: Cohort) -> Result<(), BackendError> {
+        self.cohort = Some(cohort);
+        Ok(())
+    }
+
+    fn advance(&mut self, stop: Stop) -> Result<&[Cursor], BackendError> {
+        let instructions = self.instructions;
+        let cohort = self.cohort.as_mut().ok_or_else(nothing_loaded)?;
+        let dispatch = Dispatch {
+            quanta: self.quanta,
+            stop_skill: stop.skill,
+            stop_trial: stop.trial,
+            skills: cohort.skills as u32,
+            ..Dispatch::zeroed()
+        };
+        let shared = &cohort.shared;
+        self.pool.install(|| {
+            cohort
+                .cursors
+                .par_iter_mut()
+                .zip(cohort.settings.par_chunks(cohort.skills))
+                .zip(cohort.nets.par_chunks_mut(cohort.nets_stride))
+                .zip(cohort.lessons.par_chunks_mut(cohort.lessons_stride))
+                .zip(cohort.rows.par_chunks_mut(cohort.rows_stride))
+                .for_each(|((((cursor, settings), nets), lessons), rows)| {
+                    let mut learner = Learner { shared, settings, cursor, nets, lessons, rows };
+                    run_advance(instructions, &mut learner, &dispatch);
+                });
+        });
+        Ok(&cohort.cursors)
+    }
+
+    fn evaluate(&mut self, test: Test) -> Result<Vec<Episode>, BackendError> {
+        let cohort = self.loaded()?;
+        let dispatch = Dispatch {
+            quanta: u32::MAX,
+            skills: cohort.skills as u32,
+            episodes: test.episodes,
+            test_skill: test.skill,
+            test_number: test.number,
+            ..Dispatch::zeroed()
+        };
+        let count = test.episodes as usize;
+        let mut episodes = vec![Episode::zeroed(); cohort.cursors.len() * count];
+        self.pool.install(|| {
+            episodes
+                .par_chunks_mut(count.max(1))
+                .zip(cohort.settings.par_chunks(cohort.skills))
+                .zip(cohort.nets.par_chunks(cohort.nets_stride))
+                .for_each(|((episodes, settings), nets)| {
+                    let settings = &settings[test.skill as usize];
+                    for (number, episode) in episodes.iter_mut().enumerate() {
+                        debug_assert_eq!(episode.state, STATE_FRESH);
+                        let shared = &cohort.shared;
+                        run_evaluate(self.instructions, episode, shared, settings, nets, &dispatch, number as u32);
+                        debug_assert!(episode.state <= STATE_CUT);
+                    }
+                });
+        });
+        Ok(episodes)
+    }
+
+    fn memory(&mut self) -> Result<&Cohort, BackendError> {
+        self.loaded()
+    }
+
+    fn step(&mut self, shared: &Shared, robots: &mut [Robot], quanta: u32) -> Result<(), BackendError> {
+        let dispatch = Dispatch { quanta, ..Dispatch::zeroed() };
+        let instructions = self.instructions;
+        self.pool.install(|| {
+            robots.par_iter_mut().for_each(|robot| run_step(instructions, robot, shared, &dispatch));
+        });
+        Ok(())
+    }
+}

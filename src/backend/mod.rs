@@ -1,0 +1,131 @@
+//! One narrow interface to whatever executes the kernels.
+//!
+//! Both backends execute the same three kernels on the same memory and, where the adapter is exact, leave
+//! the same bytes. `cpu` touches no wgpu and runs where no Vulkan is installed.
+
+pub mod cpu;
+
+use crate::learner::layout::{Cursor, Episode, PHASE_DONE, PHASE_START, Robot, Settings};
+use crate::learner::memory::Shared;
+
+/// All memory of the learners that train together.
+#[derive(Debug, Clone)]
+pub struct Cohort {
+    /// What all learners share.
+    pub shared: Shared,
+    /// Skills of each learner.
+    pub skills: usize,
+    /// One record per learner and skill.
+    pub settings: Vec<Settings>,
+    /// One per learner.
+    pub cursors: Vec<Cursor>,
+    /// Words of one learner's nets.
+    pub nets_stride: usize,
+    /// All learners' nets.
+    pub nets: Vec<f32>,
+    /// Words of one learner's lessons.
+    pub lessons_stride: usize,
+    /// All learners' lessons.
+    pub lessons: Vec<u32>,
+    /// Words of one learner's rows.
+    pub rows_stride: usize,
+    /// All learners' trial tables.
+    pub rows: Vec<u32>,
+}
+
+/// The point before which learners stop: the first trial at or beyond `trial` of skill `skill`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Stop {
+    /// Index of the skill.
+    pub skill: u32,
+    /// Number of trials of it.
+    pub trial: u32,
+}
+
+impl Stop {
+    /// Whether a learner waits at this point, has finished, or has failed.
+    pub fn holds(self, cursor: &Cursor) -> bool {
+        let beyond = cursor.skill > self.skill && cursor.phase <= PHASE_START;
+        let reached = cursor.skill == self.skill && cursor.phase == PHASE_START && cursor.trial >= self.trial;
+        beyond || reached || cursor.phase >= PHASE_DONE
+    }
+}
+
+/// One test of every learner.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Test {
+    /// Index of the skill.
+    pub skill: u32,
+    /// Number of the test, which keeps its noise apart from other tests'.
+    pub number: u32,
+    /// Test trials of each learner.
+    pub episodes: u32,
+}
+
+/// Executes kernels.
+pub trait Backend {
+    /// What to call it in messages and manifests, such as `cpu, 2 threads`.
+    fn describe(&self) -> String;
+
+    /// Takes the cohort's memory; everything else works on it until the next load.
+    ///
+    /// # Errors
+    /// Where the device cannot hold it.
+    fn load(&mut self, cohort: Cohort) -> Result<(), BackendError>;
+
+    /// Moves every learner that does not hold at `stop` on by a bounded amount of work, about half a
+    /// second's in all, and shows where the learners stand.
+    ///
+    /// # Errors
+    /// Where the device fails.
+    fn advance(&mut self, stop: Stop) -> Result<&[Cursor], BackendError>;
+
+    /// Runs a whole test: every learner's episodes, learner by learner.
+    ///
+    /// # Errors
+    /// Where the device fails.
+    fn evaluate(&mut self, test: Test) -> Result<Vec<Episode>, BackendError>;
+
+    /// The cohort's memory as it stands.
+    ///
+    /// # Errors
+    /// Where the device fails.
+    fn memory(&mut self) -> Result<&Cohort, BackendError>;
+
+    /// Lets robots carry out their action `quanta` times each.
+    ///
+    /// # Errors
+    /// Where the device fails.
+    fn step(&mut self, shared: &Shared, robots: &mut [Robot], quanta: u32) -> Result<(), BackendError>;
+}
+
+/// Why a backend could not be had or failed.
+#[derive(Debug, thiserror::Error)]
+pub enum BackendError {
+    /// No adapter fits what was asked for.
+    #[error("{message}\nhint: {hint}")]
+    Unavailable {
+        /// What was looked for and what was found.
+        message: String,
+        /// What the user can do.
+        hint: String,
+    },
+    /// The cohort does not fit.
+    #[error("the device cannot hold {learners} learners: {message}\nhint: use a smaller cohort, `--cohort N`")]
+    TooLarge {
+        /// Learners in the cohort.
+        learners: usize,
+        /// Which limit was met.
+        message: String,
+    },
+    /// The device was lost, hung or misbehaved.
+    #[error(
+        "the device failed in kernel `{kernel}`: {message}\nhint: run the same command again; finished learners are kept"
+    )]
+    Device {
+        /// Kernel that was running.
+        kernel: &'static str,
+        /// What the driver said.
+        message: String,
+    },
+}

@@ -1,0 +1,147 @@
+//! What is wrong with a config or world file, where, and what to do about it.
+
+use std::fmt::Write;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// A refused config, world file or command line value.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("{}", .0.render())]
+pub struct ConfigError(Box<Complaint>);
+
+/// Where a refused value came from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Place {
+    /// A part of a line of a file.
+    Line {
+        /// The file.
+        path: PathBuf,
+        /// Counted from 1.
+        line: usize,
+        /// In characters, counted from 1.
+        column: usize,
+        /// Characters that are underlined, at least 1.
+        width: usize,
+        /// The whole line.
+        text: String,
+    },
+    /// A file as a whole: it cannot be read, or lacks something.
+    File(PathBuf),
+    /// Something typed on the command line, such as `--set learning.rate=x`.
+    Argument(String),
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Complaint {
+    place: Place,
+    message: String,
+    hint: String,
+}
+
+impl ConfigError {
+    /// A complaint about `place`; the hint says what would be right.
+    pub fn new(place: Place, message: impl Into<String>, hint: impl Into<String>) -> Self {
+        Self(Box::new(Complaint { place, message: message.into(), hint: hint.into() }))
+    }
+
+    /// A file that cannot be read.
+    pub fn unreadable(path: &Path, what: &str, error: &std::io::Error) -> Self {
+        let hint = match error.kind() {
+            std::io::ErrorKind::NotFound => "check the spelling, and the folder that the path starts from",
+            std::io::ErrorKind::IsADirectory => "name a file, not a folder",
+            std::io::ErrorKind::InvalidData => "the file must be plain UTF-8 text",
+            _ => "check the file's permissions",
+        };
+        let reason = match error.kind() {
+            std::io::ErrorKind::NotFound => "there is no such file".to_owned(),
+            _ => error.to_string(),
+        };
+        Self::new(Place::File(path.to_owned()), format!("cannot read the {what}: {reason}"), hint)
+    }
+
+    /// Where the refused value stands.
+    pub fn place(&self) -> &Place {
+        &self.0.place
+    }
+
+    /// What is wrong, in one sentence.
+    pub fn message(&self) -> &str {
+        &self.0.message
+    }
+
+    /// What would be right.
+    pub fn hint(&self) -> &str {
+        &self.0.hint
+    }
+}
+
+impl Place {
+    /// The line that holds the first byte of `span`.
+    pub fn of_span(path: &Path, text: &str, span: &Range<usize>) -> Self {
+        let start = floor_boundary(text, span.start);
+        let first = text[..start].rfind('\n').map_or(0, |at| at + 1);
+        let last = text[start..].find('\n').map_or(text.len(), |at| start + at);
+        let end = floor_boundary(text, span.end).clamp(start, last);
+        Self::Line {
+            path: path.to_owned(),
+            line: text[..first].matches('\n').count() + 1,
+            column: text[first..start].chars().count() + 1,
+            width: text[start..end].trim_end().chars().count().max(1),
+            text: text[first..last].trim_end().to_owned(),
+        }
+    }
+}
+
+/// The nearest place at or before `at` where the text may be cut.
+fn floor_boundary(text: &str, at: usize) -> usize {
+    let at = at.min(text.len());
+    (0..=at).rev().find(|&i| text.is_char_boundary(i)).unwrap_or(0)
+}
+
+impl Complaint {
+    fn render(&self) -> String {
+        let mut out = self.message.clone();
+        // Writing to a String cannot fail.
+        let _ = match &self.place {
+            Place::Line { path, line, column, width, text } => {
+                let margin = " ".repeat(line.to_string().len());
+                let text = text.replace('\t', " ");
+                let under = format!("{}{}", " ".repeat(column - 1), "^".repeat(*width));
+                write!(
+                    out,
+                    "\n{margin}--> {}:{line}:{column}\n{margin} |\n{line} | {text}\n{margin} | {under}",
+                    path.display()
+                )
+            }
+            Place::File(path) => write!(out, "\n --> {}", path.display()),
+            Place::Argument(argument) => write!(out, "\n --> {argument}"),
+        };
+        if !self.hint.is_empty() {
+            let _ = write!(out, "\nhint: {}", self.hint);
+        }
+        out
+    }
+}
+
+/// The name of `allowed` that was most likely meant.
+pub(crate) fn nearest<'a>(name: &str, allowed: &[&'a str]) -> Option<&'a str> {
+    let distance = |other: &&str| strsim::damerau_levenshtein(name, other);
+    let best = allowed.iter().copied().min_by_key(distance)?;
+    // A third of the letters may be wrong; beyond that a suggestion is a guess.
+    (distance(&best) <= (name.chars().count().max(best.chars().count()) / 3).max(1)).then_some(best)
+}
+
+/// A hint for an unknown name: the likely one, or all that are allowed.
+pub(crate) fn suggest(name: &str, what: &str, allowed: &[&str]) -> String {
+    match (nearest(name, allowed), allowed) {
+        (Some(best), _) => format!("did you mean `{best}`?"),
+        (None, []) => format!("there are no {what} here"),
+        (None, _) => format!("the {what} here are {}", list(allowed)),
+    }
+}
+
+/// The names in back quotes, comma separated.
+pub(crate) fn list(names: &[&str]) -> String {
+    names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+}

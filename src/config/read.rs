@@ -1,0 +1,242 @@
+//! Takes typed values out of a [`Node`] tree and refuses what nobody asked for.
+
+use super::error::{ConfigError, list, nearest, suggest};
+use super::tree::{Entry, Node, Origin, Value};
+use std::cell::RefCell;
+
+/// What a number may be.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Bounds {
+    low: f64,
+    high: f64,
+    above: bool,
+    below: bool,
+}
+
+impl Bounds {
+    /// From `low` to `high`, both allowed.
+    pub(crate) const fn between(low: f64, high: f64) -> Self {
+        Self { low, high, above: false, below: false }
+    }
+
+    /// More than `low`, at most `high`.
+    pub(crate) const fn above(low: f64, high: f64) -> Self {
+        Self { low, high, above: true, below: false }
+    }
+
+    /// At least `low`, less than `high`.
+    pub(crate) const fn below(low: f64, high: f64) -> Self {
+        Self { low, high, above: false, below: true }
+    }
+
+    fn holds(self, value: f64) -> bool {
+        let low = if self.above { value > self.low } else { value >= self.low };
+        let high = if self.below { value < self.high } else { value <= self.high };
+        low && high
+    }
+
+    fn describe(self) -> String {
+        match (self.above, self.below) {
+            (false, false) => format!("between {} and {}", self.low, self.high),
+            (true, _) => format!("more than {} and at most {}", self.low, self.high),
+            (false, true) => format!("at least {} and less than {}", self.low, self.high),
+        }
+    }
+}
+
+/// A value with its dotted name, for messages.
+#[derive(Debug, Clone)]
+pub(crate) struct Item<'a> {
+    pub(crate) name: String,
+    pub(crate) node: &'a Node,
+}
+
+impl<'a> Item<'a> {
+    /// The document as a value.
+    pub(crate) fn root(node: &'a Node) -> Self {
+        Self { name: String::new(), node }
+    }
+
+    /// Where it was written.
+    pub(crate) fn origin(&self) -> &'a Origin {
+        &self.node.origin
+    }
+
+    /// A complaint about this value.
+    pub(crate) fn error(&self, message: impl Into<String>, hint: impl Into<String>) -> ConfigError {
+        self.origin().error(message, hint)
+    }
+
+    fn wrong(&self, expected: &str, hint: &str) -> ConfigError {
+        self.error(format!("`{}` must be {expected}, not {}", self.name, self.node.kind()), hint)
+    }
+
+    /// A number within bounds, as written.
+    pub(crate) fn double(&self, bounds: Bounds) -> Result<f64, ConfigError> {
+        let value = match self.node.value {
+            Value::Float(value) => value,
+            Value::Integer(value) => value as f64,
+            _ => return Err(self.wrong("a number", &format!("use a number {}", bounds.describe()))),
+        };
+        if !bounds.holds(value) {
+            let message = format!("`{}` is {value}, which is out of range", self.name);
+            return Err(self.error(message, format!("use a number {}", bounds.describe())));
+        }
+        Ok(value)
+    }
+
+    /// A number within bounds.
+    pub(crate) fn number(&self, bounds: Bounds) -> Result<f32, ConfigError> {
+        self.double(bounds).map(|value| value as f32)
+    }
+
+    /// A whole number within bounds, both allowed.
+    pub(crate) fn whole(&self, low: u32, high: u32) -> Result<u32, ConfigError> {
+        let hint = format!("use a whole number between {low} and {high}");
+        match self.node.value {
+            Value::Integer(value) => match u32::try_from(value) {
+                Ok(value) if (low..=high).contains(&value) => Ok(value),
+                _ => Err(self.error(format!("`{}` is {value}, which is out of range", self.name), hint)),
+            },
+            _ => Err(self.wrong("a whole number", &hint)),
+        }
+    }
+
+    /// True or false.
+    pub(crate) fn flag(&self) -> Result<bool, ConfigError> {
+        match self.node.value {
+            Value::Flag(flag) => Ok(flag),
+            _ => Err(self.wrong("true or false", "write true or false, without quotes")),
+        }
+    }
+
+    /// Text.
+    pub(crate) fn text(&self) -> Result<&'a str, ConfigError> {
+        match &self.node.value {
+            Value::Text(text) => Ok(text),
+            _ => Err(self.wrong("a string", "put text in quotes")),
+        }
+    }
+
+    /// A short name of letters, digits, `-` and `_`.
+    pub(crate) fn short_name(&self) -> Result<&'a str, ConfigError> {
+        let text = self.text()?;
+        if text.is_empty() || !text.chars().all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '_') {
+            return Err(self.error(format!("`{text}` cannot be a name"), "use letters, digits, `-` and `_` only"));
+        }
+        Ok(text)
+    }
+
+    /// One of the given names; returns its index.
+    pub(crate) fn choice(&self, what: &str, allowed: &[&str]) -> Result<usize, ConfigError> {
+        let text = self.text()?;
+        allowed
+            .iter()
+            .position(|name| *name == text)
+            .ok_or_else(|| self.error(format!("`{text}` is not one of the {what}"), suggest(text, what, allowed)))
+    }
+
+    /// The items of a list.
+    pub(crate) fn items(&self) -> Result<Vec<Item<'a>>, ConfigError> {
+        match &self.node.value {
+            Value::List(items) => {
+                let item = |(i, node)| Item { name: format!("{}[{i}]", self.name), node };
+                Ok(items.iter().enumerate().map(item).collect())
+            }
+            _ => Err(self.wrong("a list", "write it as [ ..., ... ]")),
+        }
+    }
+
+    /// A list of exactly N finite numbers; `shape` shows them, for the hint.
+    pub(crate) fn numbers<const N: usize>(&self, shape: &str) -> Result<[f32; N], ConfigError> {
+        let hint = format!("write {shape}");
+        let Value::List(_) = &self.node.value else { return Err(self.wrong(&format!("a list of {N} numbers"), &hint)) };
+        let items = self.items()?;
+        if items.len() != N {
+            return Err(self.error(format!("`{}` must have {N} numbers, not {}", self.name, items.len()), hint));
+        }
+        let mut out = [0.0; N];
+        for (to, item) in out.iter_mut().zip(&items) {
+            *to = item.number(Bounds::between(-1e6, 1e6))?;
+        }
+        Ok(out)
+    }
+
+    /// The table; every key that is not asked for before [`Table::finish`] is refused there.
+    pub(crate) fn table(&self) -> Result<Table<'a>, ConfigError> {
+        match &self.node.value {
+            Value::Table(entries) => {
+                Ok(Table { name: self.name.clone(), node: self.node, entries, asked: RefCell::new(Vec::new()) })
+            }
+            _ => Err(self.wrong("a table", "write its keys below a [header], or as { key = value }")),
+        }
+    }
+}
+
+/// A table that keeps track of the keys that were asked for.
+#[derive(Debug)]
+pub(crate) struct Table<'a> {
+    name: String,
+    node: &'a Node,
+    entries: &'a [Entry],
+    asked: RefCell<Vec<String>>,
+}
+
+impl<'a> Table<'a> {
+    /// The full dotted name of a key.
+    pub(crate) fn name_of(&self, key: &str) -> String {
+        if self.name.is_empty() { key.to_owned() } else { format!("{}.{key}", self.name) }
+    }
+
+    /// The value under a key that may be missing.
+    pub(crate) fn optional(&self, key: &str) -> Option<Item<'a>> {
+        self.asked.borrow_mut().push(key.to_owned());
+        self.node.get(key).map(|node| Item { name: self.name_of(key), node })
+    }
+
+    /// The value under a key that must be there; `example` shows one.
+    pub(crate) fn required(&self, key: &str, example: &str) -> Result<Item<'a>, ConfigError> {
+        self.optional(key).ok_or_else(|| {
+            // A misspelt key explains a missing one better.
+            let stranger = self.entries.iter().find(|e| nearest(&e.key, &[key]).is_some());
+            let hint = match stranger {
+                Some(entry) => format!("`{}` was found; did you mean `{key}`?", entry.key),
+                None => format!("add `{key} = {example}`"),
+            };
+            self.missing(key, hint)
+        })
+    }
+
+    fn missing(&self, key: &str, hint: String) -> ConfigError {
+        let message = format!("`{}` is missing", self.name_of(key));
+        // The document has no line of its own.
+        if self.name.is_empty() {
+            self.node.origin.file_error(message, hint)
+        } else {
+            self.node.origin.error(message, hint)
+        }
+    }
+
+    /// All keys with their values, all counted as asked for.
+    pub(crate) fn all(&self) -> Vec<(&'a Entry, Item<'a>)> {
+        let mut asked = self.asked.borrow_mut();
+        let each = self.entries.iter().map(|entry| {
+            asked.push(entry.key.clone());
+            (entry, Item { name: self.name_of(&entry.key), node: &entry.node })
+        });
+        each.collect()
+    }
+
+    /// Refuses keys that were never asked for.
+    pub(crate) fn finish(self) -> Result<(), ConfigError> {
+        let asked = self.asked.borrow();
+        let Some(entry) = self.entries.iter().find(|entry| !asked.contains(&entry.key)) else { return Ok(()) };
+        let place = if self.name.is_empty() { "here".to_owned() } else { format!("in `{}`", self.name) };
+        let asked: Vec<&str> = asked.iter().map(String::as_str).collect();
+        let hint = match nearest(&entry.key, &asked) {
+            Some(best) => format!("did you mean `{best}`?"),
+            None => format!("the keys {place} are {}", list(&asked)),
+        };
+        Err(entry.origin.error(format!("unknown key `{}`", self.name_of(&entry.key)), hint))
+    }
+}

@@ -1,0 +1,181 @@
+//! TOML as a tree in which every key and value remembers where it was written.
+
+use super::error::{ConfigError, Place};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use toml::de::{DeTable, DeValue};
+
+/// A text that values come from.
+#[derive(Debug)]
+pub(crate) enum Source {
+    /// A file, or the built-in defaults.
+    File { path: PathBuf, text: String },
+    /// A command line argument, whole.
+    Argument(String),
+}
+
+/// Where a key or value was written.
+#[derive(Debug, Clone)]
+pub(crate) struct Origin {
+    pub(crate) source: Arc<Source>,
+    pub(crate) span: Range<usize>,
+}
+
+impl Origin {
+    /// A complaint about this place.
+    pub(crate) fn error(&self, message: impl Into<String>, hint: impl Into<String>) -> ConfigError {
+        let place = match &*self.source {
+            Source::File { path, text } => Place::of_span(path, text, &self.span),
+            Source::Argument(argument) => Place::Argument(argument.clone()),
+        };
+        ConfigError::new(place, message, hint)
+    }
+
+    /// A complaint about the whole text.
+    pub(crate) fn file_error(&self, message: impl Into<String>, hint: impl Into<String>) -> ConfigError {
+        let place = match &*self.source {
+            Source::File { path, .. } => Place::File(path.clone()),
+            Source::Argument(argument) => Place::Argument(argument.clone()),
+        };
+        ConfigError::new(place, message, hint)
+    }
+}
+
+/// A value and its place.
+#[derive(Debug, Clone)]
+pub(crate) struct Node {
+    pub(crate) value: Value,
+    pub(crate) origin: Origin,
+}
+
+/// A TOML value. Numbers are finite; dates are refused on reading.
+#[derive(Debug, Clone)]
+pub(crate) enum Value {
+    Text(String),
+    Integer(i64),
+    Float(f64),
+    Flag(bool),
+    List(Vec<Node>),
+    Table(Vec<Entry>),
+}
+
+/// A key with its value; `origin` is the key's.
+#[derive(Debug, Clone)]
+pub(crate) struct Entry {
+    pub(crate) key: String,
+    pub(crate) origin: Origin,
+    pub(crate) node: Node,
+}
+
+impl Node {
+    /// Reads a whole file's text.
+    pub(crate) fn parse(text: &str, path: &Path) -> Result<Self, ConfigError> {
+        let source = Arc::new(Source::File { path: path.to_owned(), text: text.to_owned() });
+        let whole = Origin { source: Arc::clone(&source), span: 0..0 };
+        let document = DeTable::parse(text).map_err(|error| {
+            let origin = Origin { source: Arc::clone(&source), span: error.span().unwrap_or(0..0) };
+            origin.error(error.message(), "this is not valid TOML here; see https://toml.io for the rules")
+        })?;
+        Ok(Self { value: table(document.get_ref(), &source)?, origin: whole })
+    }
+
+    /// Reads one value, all of which has the given place.
+    pub(crate) fn parse_value(text: &str, source: &Arc<Source>) -> Option<Result<Self, ConfigError>> {
+        let value = DeValue::parse(text).ok()?;
+        Some(convert(value.get_ref(), value.span(), source))
+    }
+
+    /// An empty table.
+    pub(crate) fn empty(origin: Origin) -> Self {
+        Self { value: Value::Table(Vec::new()), origin }
+    }
+
+    /// The value's type in words.
+    pub(crate) fn kind(&self) -> &'static str {
+        match self.value {
+            Value::Text(_) => "a string",
+            Value::Integer(_) => "a whole number",
+            Value::Float(_) => "a number",
+            Value::Flag(_) => "true or false",
+            Value::List(_) => "a list",
+            Value::Table(_) => "a table",
+        }
+    }
+
+    /// The value under a key, if this is a table that has it.
+    pub(crate) fn get(&self, key: &str) -> Option<&Node> {
+        self.entry(key).map(|entry| &entry.node)
+    }
+
+    /// The key and value, if this is a table that has it.
+    pub(crate) fn entry(&self, key: &str) -> Option<&Entry> {
+        match &self.value {
+            Value::Table(entries) => entries.iter().find(|entry| entry.key == key),
+            _ => None,
+        }
+    }
+
+    /// Takes a key out of this table.
+    pub(crate) fn remove(&mut self, key: &str) -> Option<Entry> {
+        let Value::Table(entries) = &mut self.value else { return None };
+        let at = entries.iter().position(|entry| entry.key == key)?;
+        Some(entries.remove(at))
+    }
+
+    /// Lays `over` on top: tables are merged key by key, anything else is replaced.
+    pub(crate) fn merge(&mut self, over: Node) {
+        match (&mut self.value, over.value) {
+            (Value::Table(below), Value::Table(above)) => {
+                for entry in above {
+                    match below.iter_mut().find(|old| old.key == entry.key) {
+                        Some(old) => old.node.merge(entry.node),
+                        None => below.push(entry),
+                    }
+                }
+            }
+            (below, above) => {
+                *below = above;
+                self.origin = over.origin;
+            }
+        }
+    }
+}
+
+fn table(entries: &DeTable<'_>, source: &Arc<Source>) -> Result<Value, ConfigError> {
+    let mut out = Vec::with_capacity(entries.len());
+    for (key, value) in entries {
+        out.push(Entry {
+            key: key.get_ref().to_string(),
+            origin: Origin { source: Arc::clone(source), span: key.span() },
+            node: convert(value.get_ref(), value.span(), source)?,
+        });
+    }
+    Ok(Value::Table(out))
+}
+
+fn convert(value: &DeValue<'_>, span: Range<usize>, source: &Arc<Source>) -> Result<Node, ConfigError> {
+    let origin = Origin { source: Arc::clone(source), span };
+    let value = match value {
+        DeValue::String(text) => Value::Text(text.to_string()),
+        DeValue::Integer(number) => match i64::from_str_radix(number.as_str(), number.radix()) {
+            Ok(number) => Value::Integer(number),
+            Err(_) => return Err(origin.error(format!("{number} is too large"), "use a number of at most 18 digits")),
+        },
+        DeValue::Float(number) => match number.as_str().parse::<f64>() {
+            Ok(number) if number.is_finite() => Value::Float(number),
+            _ => {
+                return Err(
+                    origin.error(format!("`{number}` is not a number that can be used"), "every number must be finite")
+                );
+            }
+        },
+        DeValue::Boolean(flag) => Value::Flag(*flag),
+        DeValue::Datetime(_) => return Err(origin.error("dates have no meaning here", "put text in quotes")),
+        DeValue::Array(items) => Value::List(
+            items.iter().map(|item| convert(item.get_ref(), item.span(), source)).collect::<Result<_, _>>()?,
+        ),
+        DeValue::Table(entries) => table(entries, source)?,
+    };
+    Ok(Node { value, origin })
+}

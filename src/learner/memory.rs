@@ -1,0 +1,63 @@
+//! What the CPU twins work on: one learner's slices of the cohort's buffers, and the scratch memory that
+//! a workgroup has.
+
+use super::layout::{Cursor, LANES, MAX_CHILDREN, MAX_INPUTS, RECORD_WORDS, Settings, SkillPlan};
+use crate::math::lanes::Lanes;
+use crate::robot::floor::Floor;
+
+/// Read-only memory that all learners of a cohort share.
+#[derive(Debug, Clone)]
+pub struct Shared {
+    /// The floor plan.
+    pub floor: Floor,
+    /// Shapes of the skills.
+    pub skills: Vec<SkillPlan>,
+    /// Culled segment lists, region cells, sonar tables.
+    pub atlas: Vec<u32>,
+    /// The teacher's lessons.
+    pub bank: Vec<u32>,
+}
+
+/// One learner's memory.
+#[derive(Debug)]
+pub struct Learner<'a> {
+    /// What all learners share.
+    pub shared: &'a Shared,
+    /// One record per skill.
+    pub settings: &'a [Settings],
+    /// Where it stands.
+    pub cursor: &'a mut Cursor,
+    /// Weights, optimiser moments and clocks of all skills.
+    pub nets: &'a mut [f32],
+    /// Remembered lessons of all skills.
+    pub lessons: &'a mut [u32],
+    /// Rows of the trial table.
+    pub rows: &'a mut [u32],
+}
+
+/// Twin of the shaders' workgroup memory.
+#[derive(Debug, Clone)]
+pub struct Scratch {
+    /// The step being recorded or replayed.
+    pub record: [u32; RECORD_WORDS],
+    /// Inputs of the nets.
+    pub inputs: [f32; MAX_INPUTS],
+    /// Hidden activations of every child's net.
+    pub hidden: [Lanes; MAX_CHILDREN],
+    /// Q-value of every child.
+    pub q: [f32; MAX_CHILDREN],
+    /// Boltzmann weight of every child, 0 where it is not available.
+    pub odds: [f32; MAX_CHILDREN],
+}
+
+impl Default for Scratch {
+    fn default() -> Self {
+        Self {
+            record: [0; RECORD_WORDS],
+            inputs: [0.0; MAX_INPUTS],
+            hidden: [[0.0; LANES]; MAX_CHILDREN],
+            q: [0.0; MAX_CHILDREN],
+            odds: [0.0; MAX_CHILDREN],
+        }
+    }
+}

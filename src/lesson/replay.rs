@@ -1,0 +1,119 @@
+//! Backward replay with TD(lambda) (paper, section I).
+//!
+//! From the last step to the first: u_t = r_t + gamma [(1 - lambda) max_k Q(x_{t+1}, k) + lambda u_{t+1}], the
+//! bracket 0 at a goal. A step whose action the current policy would hardly take is not learned, and cuts
+//! the chain: there max Q stands for u. The form is recalled from Lin's other papers, so it is our choice.
+
+use crate::learner::layout::{LESSON_HEADER, PHASE_FAILED, RECORD_WORDS};
+use crate::learner::memory::{Learner, Scratch};
+use crate::lesson::record::CUT;
+use crate::math::functions::{exponential, ln};
+use crate::math::rng::{Purpose, Stream, below, draw, unit};
+use crate::qnet::backward::backward;
+use crate::qnet::forward::forward;
+use crate::skill::choose::{sharpness, weigh};
+use crate::skill::observe::encode;
+
+/// Word of the bank at which the learner's taught lesson `number` stands: one lesson drawn from each of
+/// `lessons` equal strata of the bank.
+#[inline(always)]
+pub fn taught_lesson(learner: &Learner<'_>, number: u32) -> u32 {
+    let settings = &learner.settings[learner.cursor.skill as usize];
+    let skill = &learner.shared.skills[learner.cursor.skill as usize];
+    let stream = Stream {
+        key: [settings.run_seed, settings.learner_seed],
+        skill: learner.cursor.skill,
+        trial: number,
+        step: 0,
+        purpose: Purpose::Lesson as u32,
+    };
+    let stratum = skill.bank_lessons / settings.lessons;
+    let index = number * stratum + below(draw(stream, 0)[0], stratum);
+    skill.bank_offset + index * skill.lesson_stride
+}
+
+/// Word of the memory at which a remembered lesson stands, its age drawn from an exponential
+/// distribution of mean `mean_age`, cut off at the oldest.
+#[inline(always)]
+pub fn recent_lesson(learner: &Learner<'_>, word: u32) -> u32 {
+    let settings = &learner.settings[learner.cursor.skill as usize];
+    let skill = &learner.shared.skills[learner.cursor.skill as usize];
+    let kept = if learner.cursor.remembered < settings.memory { learner.cursor.remembered } else { settings.memory };
+    // The host sends the negative inverse of the mean age: kernels do not divide.
+    let whole = 1.0 - exponential(settings.age_decay * kept as f32);
+    let depth = -ln(1.0 - unit(word) * whole) * settings.mean_age;
+    let drawn = depth as u32;
+    let age = if drawn < kept { drawn } else { kept - 1 };
+    let slot = (learner.cursor.remembered - 1 - age) % settings.memory;
+    skill.memory_offset + slot * skill.lesson_stride
+}
+
+/// One word of the lesson in replay.
+#[inline(always)]
+pub fn lesson_word(learner: &Learner<'_>, offset: u32) -> u32 {
+    let at = (learner.cursor.replay_lesson + offset) as usize;
+    if learner.cursor.replay_taught == 1 { learner.shared.bank[at] } else { learner.lessons[at] }
+}
+
+/// Opens the replay of the lesson at word `lesson` of the bank (`taught` 1) or of the memory.
+#[inline(always)]
+pub fn begin_replay(learner: &mut Learner<'_>, lesson: u32, taught: u32) {
+    let settings = &learner.settings[learner.cursor.skill as usize];
+    learner.cursor.replay_lesson = lesson;
+    learner.cursor.replay_taught = taught;
+    let steps = lesson_word(learner, 0);
+    let end = lesson_word(learner, 1);
+    learner.cursor.replay += 1;
+    learner.cursor.replay_left = steps;
+    learner.cursor.replay_open = u32::from(end == CUT && settings.timeout_terminal == 0);
+    learner.cursor.next_best = 0.0;
+    learner.cursor.next_return = 0.0;
+}
+
+/// Fetches step `step` of the lesson in replay into the record.
+#[inline(always)]
+pub fn load_record(learner: &Learner<'_>, scratch: &mut Scratch, step: u32) {
+    let offset = LESSON_HEADER as u32 + step * RECORD_WORDS as u32;
+    for word in 0..RECORD_WORDS {
+        scratch.record[word] = lesson_word(learner, offset + word as u32);
+    }
+}
+
+/// Learns from the next step of the lesson in replay, last step first.
+#[inline(always)]
+pub fn replay_step(learner: &mut Learner<'_>, scratch: &mut Scratch, base: u32) {
+    let settings = &learner.settings[learner.cursor.skill as usize];
+    let skill = &learner.shared.skills[learner.cursor.skill as usize];
+    let open = learner.cursor.replay_open == 1;
+    let step = if open { learner.cursor.replay_left } else { learner.cursor.replay_left - 1 };
+    load_record(learner, scratch, step);
+    encode(learner.shared, scratch, skill);
+    forward(learner.nets, scratch, skill, base);
+    let child = scratch.record[8] & 0xff;
+    let masked = (scratch.record[8] >> 8) & 0xff;
+    let outlook = weigh(scratch, skill.children, masked, sharpness(settings, learner.cursor.trial));
+    if open {
+        learner.cursor.replay_open = 0;
+        learner.cursor.next_best = outlook.best;
+        learner.cursor.next_return = outlook.best;
+    } else {
+        let reward = f32::from_bits(scratch.record[9]) * settings.value_scale;
+        let future = (1.0 - settings.lambda) * learner.cursor.next_best + settings.lambda * learner.cursor.next_return;
+        let aim = reward + settings.gamma * future;
+        let low = if aim > -settings.target_limit { aim } else { -settings.target_limit };
+        let goal = if low < settings.target_limit { low } else { settings.target_limit };
+        let taught = settings.taught_always == 1 && learner.cursor.replay_taught == 1;
+        let policy = taught || scratch.odds[child as usize] > settings.policy_threshold * outlook.total;
+        let delta = goal - scratch.q[child as usize];
+        // All exponent bits set: the number stopped being finite.
+        if (delta.to_bits() & 0x7f80_0000) == 0x7f80_0000 {
+            learner.cursor.phase = PHASE_FAILED;
+        } else if policy {
+            backward(learner.nets, scratch, skill, settings, base, child, delta);
+            learner.cursor.updates += 1;
+        }
+        learner.cursor.next_best = outlook.best;
+        learner.cursor.next_return = if policy { goal } else { outlook.best };
+        learner.cursor.replay_left = step;
+    }
+}

@@ -1,0 +1,113 @@
+//! One step of error back-propagation through one child's net (paper, section I, step 2).
+
+use super::forward::net_of;
+use crate::learner::layout::{LANES, Settings, SkillPlan};
+use crate::learner::memory::Scratch;
+use crate::math::functions::{flush, reciprocal, reciprocal_sqrt, square_root};
+use crate::math::lanes::Lanes;
+
+/// Lane of the clock row at which the second moments' decay stands; the first moments' stand from lane 0.
+pub const CLOCK_SECOND: u32 = 16;
+
+/// Back-propagated error of every lane: of the output, times what it meets.
+#[derive(Debug, Clone, Copy)]
+pub struct Errors {
+    /// Of the output's sum.
+    pub output: f32,
+    /// Of each hidden unit's sum.
+    pub hidden: Lanes,
+}
+
+/// Errors of a net whose output should rise by `delta`.
+#[inline(always)]
+pub fn errors(nets: &[f32], scratch: &Scratch, skill: &SkillPlan, net: u32, child: u32, delta: f32) -> Errors {
+    let value = scratch.q[child as usize];
+    let output = delta * (1.0 - value * value);
+    let mut hidden = [0.0; LANES];
+    for lane in 0..LANES {
+        let active = scratch.hidden[child as usize][lane];
+        let weight = nets[(net + (skill.inputs + 1) * LANES as u32) as usize + lane];
+        hidden[lane] = output * weight * (1.0 - active * active);
+    }
+    Errors { output, hidden }
+}
+
+/// Ascent direction of one row of weights.
+#[inline(always)]
+pub fn gradient(scratch: &Scratch, skill: &SkillPlan, child: u32, row: u32, errors: &Errors) -> Lanes {
+    let mut slope = errors.hidden;
+    if row < skill.inputs {
+        let x = scratch.inputs[row as usize];
+        for lane in 0..LANES {
+            slope[lane] = errors.hidden[lane] * x;
+        }
+    }
+    if row == skill.inputs + 1 {
+        for lane in 0..LANES {
+            slope[lane] = errors.output * scratch.hidden[child as usize][lane];
+        }
+    }
+    if row == skill.inputs + 2 {
+        for lane in 0..LANES {
+            slope[lane] = if lane == 0 { errors.output } else { 0.0 };
+        }
+    }
+    slope
+}
+
+/// Moves the net of `child` so that its output changes by about `delta` times the learning rate.
+#[inline(always)]
+pub fn backward(
+    nets: &mut [f32],
+    scratch: &Scratch,
+    skill: &SkillPlan,
+    settings: &Settings,
+    base: u32,
+    child: u32,
+    delta: f32,
+) {
+    let net = net_of(skill, base, child);
+    let slab = skill.rows * LANES as u32;
+    let found = errors(nets, scratch, skill, net, child, delta);
+    if settings.optimiser == 1 {
+        // Adam (Kingma and Ba, 2015) in its second form, with epsilon under the root: one reciprocal root
+        // serves where a root and a division would.
+        let clock = (base + skill.clock_offset + child) as usize;
+        let first = flush(nets[clock] * settings.beta1);
+        let second = flush(nets[clock + CLOCK_SECOND as usize] * settings.beta2);
+        let rate = settings.rate * square_root(1.0 - second) * reciprocal(1.0 - first);
+        nets[clock] = first;
+        nets[clock + CLOCK_SECOND as usize] = second;
+        let rest1 = 1.0 - settings.beta1;
+        let rest2 = 1.0 - settings.beta2;
+        let (weights, moments) = nets[net as usize..(net + 3 * slab) as usize].split_at_mut(slab as usize);
+        let (means, squares) = moments.split_at_mut(slab as usize);
+        let weights = weights.as_chunks_mut::<LANES>().0;
+        let means = means.as_chunks_mut::<LANES>().0;
+        let squares = squares.as_chunks_mut::<LANES>().0;
+        for row in 0..skill.rows as usize {
+            let slope = gradient(scratch, skill, child, row as u32, &found);
+            for lane in 0..LANES {
+                let g = slope[lane];
+                let mean = flush(settings.beta1 * means[row][lane] + rest1 * g);
+                let square = flush(settings.beta2 * squares[row][lane] + rest2 * (g * g));
+                means[row][lane] = mean;
+                squares[row][lane] = square;
+                weights[row][lane] += rate * mean * reciprocal_sqrt(square + settings.epsilon2);
+            }
+        }
+    } else {
+        let (weights, velocities) = nets[net as usize..(net + 2 * slab) as usize].split_at_mut(slab as usize);
+        let weights = weights.as_chunks_mut::<LANES>().0;
+        let velocities = velocities.as_chunks_mut::<LANES>().0;
+        for row in 0..skill.rows as usize {
+            let slope = gradient(scratch, skill, child, row as u32, &found);
+            for lane in 0..LANES {
+                let g = slope[lane];
+                let velocity = flush(settings.beta1 * velocities[row][lane] + settings.rate * g);
+                velocities[row][lane] = velocity;
+                weights[row][lane] += velocity;
+            }
+        }
+    }
+}

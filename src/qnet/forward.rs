@@ -1,0 +1,39 @@
+//! Q-values of every child.
+
+use crate::learner::layout::{LANES, MAX_CHILDREN, SkillPlan};
+use crate::learner::memory::Scratch;
+use crate::math::functions::squash;
+use crate::math::lanes::lanes_sums;
+
+/// Word at which a child's net stands; its three slabs follow one another.
+#[inline(always)]
+pub fn net_of(skill: &SkillPlan, base: u32, child: u32) -> u32 {
+    base + skill.nets_offset + child * 3 * skill.rows * LANES as u32
+}
+
+/// Computes `hidden` and `q` of every child from `inputs`.
+#[inline(always)]
+pub fn forward(nets: &[f32], scratch: &mut Scratch, skill: &SkillPlan, base: u32) {
+    let inputs = skill.inputs as usize;
+    let mut partials = [[0.0; LANES]; MAX_CHILDREN];
+    for child in 0..skill.children as usize {
+        let net = net_of(skill, base, child as u32) as usize;
+        let weights = &nets[net..net + skill.rows as usize * LANES].as_chunks::<LANES>().0[..inputs + 3];
+        let mut sum = weights[inputs];
+        for (row, x) in weights[..inputs].iter().zip(&scratch.inputs) {
+            for lane in 0..LANES {
+                sum[lane] += row[lane] * *x;
+            }
+        }
+        for lane in 0..LANES {
+            let active = squash(sum[lane]);
+            scratch.hidden[child][lane] = active;
+            partials[child][lane] = active * weights[inputs + 1][lane];
+        }
+    }
+    lanes_sums(&mut partials, skill.children);
+    for child in 0..skill.children as usize {
+        let bias = nets[net_of(skill, base, child as u32) as usize + (inputs + 2) * LANES];
+        scratch.q[child] = squash(partials[child][0] + bias);
+    }
+}

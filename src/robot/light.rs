@@ -1,0 +1,59 @@
+//! The rotating light sensor: 24 bits, lit where the charger's light is bright enough on that bearing.
+//!
+//! Brightness = (range / d)^2 exponential(k (cos(angle off the light) - 1)), k = 1 / (15 degrees)^2, in line of
+//! sight only. Our choice: the paper states 24 binary readings and no more. Near the charger several
+//! bearings are lit, far away one.
+
+use super::floor::Floor;
+use crate::learner::layout::LANES;
+use crate::math::functions::{exponential, reciprocal, reciprocal_sqrt};
+use crate::math::lanes::{Lanes, lanes_or};
+
+/// 1 / (15 degrees in radians)^2.
+const SHARPNESS: f32 = 14.590_25;
+
+/// Whether nothing but the charger stands between the robot and the light.
+#[inline(always)]
+pub fn in_sight(floor: &Floor, x: f32, y: f32) -> bool {
+    let lx = floor.plan.light_x - x;
+    let ly = floor.plan.light_y - y;
+    let mut hidden = [0_u32; LANES];
+    for block in &floor.blocks {
+        for lane in 0..LANES {
+            let ax = block.ax[lane] - x;
+            let ay = block.ay[lane] - y;
+            let bx = block.bx[lane] - x;
+            let by = block.by[lane] - y;
+            let dx = block.bx[lane] - block.ax[lane];
+            let dy = block.by[lane] - block.ay[lane];
+            let over = ax * dy - ay * dx;
+            let under = lx * dy - ly * dx;
+            let side_a = ax * ly - ay * lx;
+            let side_b = bx * ly - by * lx;
+            let crosses = (side_a > 0.0) != (side_b > 0.0);
+            let over_signed = if under < 0.0 { -over } else { over };
+            let between = over_signed >= 0.0 && over_signed < under.abs();
+            let solid = block.charger[lane] == 0 && block.length[lane] >= 0.0;
+            hidden[lane] |= u32::from(crosses && between && solid);
+        }
+    }
+    lanes_or(&hidden) == 0
+}
+
+/// Brightness of the light on each bearing, as if in sight; 1 is the threshold.
+#[inline(always)]
+pub fn brightness(floor: &Floor, x: f32, y: f32, ux: &Lanes, uy: &Lanes) -> Lanes {
+    let lx = floor.plan.light_x - x;
+    let ly = floor.plan.light_y - y;
+    let square = lx * lx + ly * ly;
+    // The light itself is out of the robot's reach; the bound keeps the functions in their range.
+    let distance2 = if square > 1.0 { square } else { 1.0 };
+    let nearness = reciprocal_sqrt(distance2);
+    let falloff = floor.plan.light_range2 * reciprocal(distance2);
+    let mut bright = [0.0; LANES];
+    for lane in 0..LANES {
+        let aim = (ux[lane] * lx + uy[lane] * ly) * nearness;
+        bright[lane] = falloff * exponential(SHARPNESS * (aim - 1.0));
+    }
+    bright
+}

@@ -1,0 +1,8 @@
+//! DECIDE: from what the robot senses to what it does, and what that earns.
+//!
+//! Twins: `shaders/skill/`.
+
+pub mod choose;
+pub mod observe;
+pub mod reward;
+pub mod start;
