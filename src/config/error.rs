@@ -55,6 +55,8 @@ impl ConfigError {
         };
         let reason = match error.kind() {
             std::io::ErrorKind::NotFound => "there is no such file".to_owned(),
+            std::io::ErrorKind::IsADirectory => "it is a folder".to_owned(),
+            std::io::ErrorKind::InvalidData => "it is not text".to_owned(),
             _ => error.to_string(),
         };
         Self::new(Place::File(path.to_owned()), format!("cannot read the {what}: {reason}"), hint)
@@ -126,10 +128,10 @@ impl Complaint {
 
 /// The name of `allowed` that was most likely meant.
 pub(crate) fn nearest<'a>(name: &str, allowed: &[&'a str]) -> Option<&'a str> {
-    let distance = |other: &&str| strsim::damerau_levenshtein(name, other);
+    let distance = |other: &&str| strsim::damerau_levenshtein(&name.to_lowercase(), &other.to_lowercase());
     let best = allowed.iter().copied().min_by_key(distance)?;
     // A third of the letters may be wrong; beyond that a suggestion is a guess.
-    (distance(&best) <= (name.chars().count().max(best.chars().count()) / 3).max(1)).then_some(best)
+    (distance(&best) <= name.chars().count().max(best.chars().count()) / 3).then_some(best)
 }
 
 /// A hint for an unknown name: the likely one, or all that are allowed.
