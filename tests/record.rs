@@ -274,6 +274,50 @@ fn a_killed_run_is_resumed_from_every_state() {
     assert!(!dir.join("parts").exists());
 }
 
+const KILLED: &str = "SKILLTREE_TEST_KILLED_FOLDER";
+
+/// Not a test by itself: the process that the next test kills.
+#[test]
+#[ignore = "started by killed_processes_leave_whole_parts"]
+fn commits_until_killed() {
+    let Ok(dir) = std::env::var(KILLED) else { return };
+    let mut run = open(Path::new(&dir)).unwrap();
+    for round in 0_u32.. {
+        let content = round.to_le_bytes().repeat(200_000);
+        run.commit_part(&format!("cohort-{}", round % 3), &content).unwrap();
+    }
+}
+
+#[test]
+fn killed_processes_leave_whole_parts() {
+    let parent = TempDir::new().unwrap();
+    let dir = parent.path().join("run");
+    let mut seen = 0;
+    for round in 0..12 {
+        let mut child = std::process::Command::new(std::env::current_exe().unwrap())
+            .args(["--exact", "commits_until_killed", "--ignored"])
+            .env(KILLED, &dir)
+            .stdout(std::process::Stdio::null())
+            .spawn()
+            .unwrap();
+        std::thread::sleep(std::time::Duration::from_millis(40 + 17 * round));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        let run = open(&dir).unwrap();
+        for name in run.parts().unwrap() {
+            let content = run.read_part(&name).unwrap().unwrap();
+            assert!(content.len() == 800_000 && content.chunks(4).all(|word| word == &content[..4]), "{name}");
+            seen += 1;
+        }
+        let hidden = fs::read_dir(dir.join("parts"))
+            .into_iter()
+            .flatten()
+            .filter(|entry| entry.as_ref().unwrap().file_name().to_string_lossy().starts_with('.'));
+        assert_eq!(hidden.count(), 0);
+    }
+    assert!(seen > 0, "no part was ever committed");
+}
+
 #[test]
 fn a_finished_run_vouches_for_every_byte() {
     let parent = TempDir::new().unwrap();

@@ -9,8 +9,8 @@ use skilltree::report::statistics::{
     bootstrap, interquartile_mean, mean, paired_difference, quantile, share_below, sorted, wilson,
 };
 use skilltree::report::summary::summarise;
-use skilltree::report::{ReportError, curves, raster, write_with};
-use skilltree::world::{Charger, Door, Light, Pose, Rect, Room, Segment, World};
+use skilltree::report::{ReportError, curves, raster, write};
+use skilltree::world::{Pose, World, load};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -110,6 +110,7 @@ fn bootstrap_intervals_cover() {
     }
 }
 
+const OFFICE: &str = include_str!("../configs/worlds/office.toml");
 const ARMS: [&str; 5] = ["hierarchical", "monolithic", "no-persistence", "no-teaching", "fixed-switch"];
 const SKILLS: [&str; 2] = ["dock", "recharge"];
 const MOMENTS: [u32; 13] = [0, 10, 25, 50, 75, 100, 125, 150, 175, 200, 225, 250, 300];
@@ -154,47 +155,7 @@ fn synthetic(seeds: u32) -> (Names, Vec<EvaluationRow>) {
     (names, rows)
 }
 
-/// Two rooms, a door between them, a desk, a charger with its light, two places.
-fn office() -> World {
-    let rectangle = |x0, y0, x1, y1| Rect { min: Vec2::new(x0, y0), max: Vec2::new(x1, y1) };
-    let boxes = vec![
-        rectangle(176.0, 0.0, 184.0, 120.0),
-        rectangle(176.0, 170.0, 184.0, 300.0),
-        rectangle(70.0, 0.0, 110.0, 30.0),
-        rectangle(300.0, 220.0, 360.0, 300.0),
-    ];
-    let charger = rectangle(0.0, 0.0, 24.0, 24.0);
-    let mut segments = Vec::new();
-    let outer = rectangle(0.0, 0.0, 360.0, 300.0);
-    for (area, charger) in [(&outer, false), (&charger, true)].into_iter().chain(boxes.iter().map(|area| (area, false)))
-    {
-        let corners = [area.min, Vec2::new(area.max.x, area.min.y), area.max, Vec2::new(area.min.x, area.max.y)];
-        segments.extend((0..4).map(|i| Segment { a: corners[i], b: corners[(i + 1) % 4], charger }));
-    }
-    let place = |name: &str, x, y, heading| (name.to_owned(), Pose { x, y, heading });
-    World {
-        name: "office".into(),
-        size: Vec2::new(360.0, 300.0),
-        segments,
-        boxes,
-        rooms: vec![
-            Room { name: "A".into(), area: rectangle(0.0, 0.0, 176.0, 300.0) },
-            Room { name: "B".into(), area: rectangle(184.0, 0.0, 360.0, 300.0) },
-        ],
-        doors: vec![Door {
-            name: "middle".into(),
-            rooms: [0, 1],
-            centre: Vec2::new(180.0, 145.0),
-            width: 50.0,
-            normal: Vec2::X,
-            depth: 8.0,
-        }],
-        charger: Some(Charger { area: charger, tolerance: 30.0 }),
-        light: Some(Light { at: Vec2::new(12.0, 12.0), range: 230.0, area: 140.0 }),
-        places: vec![place("L1", 330.0, 56.0, 90.0), place("L2", 80.0, 90.0, 225.0)],
-    }
-}
-
+/// Sonar by plain ray casting; light in a cone ahead.
 fn readings(world: &World) -> Vec<PlaceReading> {
     let ray = |from: Vec2, degrees: f32| {
         let direction = Vec2::from_angle(degrees.to_radians());
@@ -219,6 +180,7 @@ fn readings(world: &World) -> Vec<PlaceReading> {
 
 fn run_folder(dir: &Path, seeds: u32) {
     let (names, rows) = synthetic(seeds);
+    let world = load::parse(OFFICE, Path::new("world.toml")).unwrap();
     let config = "title = \"Synthetic: five <arms> & a planner\"\nseeds = \"0..31\"\n";
     let provenance = Provenance {
         version: "0.1.0".into(),
@@ -230,13 +192,9 @@ fn run_folder(dir: &Path, seeds: u32) {
     };
     let files = [
         ("evaluations.parquet".to_owned(), write_evaluations(&rows, &names).unwrap()),
-        ("places.json".to_owned(), write_places(&readings(&office())).unwrap()),
+        ("places.json".to_owned(), write_places(&readings(&world)).unwrap()),
     ];
-    RunFolder::open(dir, config, "size = [360, 300]\n").unwrap().finish(files, provenance).unwrap();
-}
-
-fn report(dir: &Path) -> Result<Vec<PathBuf>, ReportError> {
-    write_with(dir, |_, _| Ok::<_, String>(office()))
+    RunFolder::open(dir, config, OFFICE).unwrap().finish(files, provenance).unwrap();
 }
 
 /// Lies in the build folder, so that one can look at it after the test.
@@ -250,15 +208,15 @@ fn scratch(name: &str) -> PathBuf {
 fn a_report_is_complete_and_the_same_every_time() {
     let dir = scratch("report-32");
     run_folder(&dir, 32);
-    let written = report(&dir).unwrap();
+    let written = write(&dir).unwrap();
     let names: Vec<_> = written.iter().map(|path| path.strip_prefix(&dir).unwrap().to_str().unwrap()).collect();
     for name in ["learning-dock", "steps-dock", "actions-recharge", "world", "sonar-L1", "light-L2"] {
         assert!(names.contains(&format!("figures/{name}.svg").as_str()), "{names:?}");
         assert!(names.contains(&format!("figures/{name}.png").as_str()), "{names:?}");
     }
-    assert_eq!((names.len(), names.last()), (2 * (2 * 3 + 1 + 2 * 2) + 1, Some(&"report.html")));
+    assert_eq!((names.len(), names.last()), (2 * (2 * 3 + 1 + 3 * 2) + 1, Some(&"report.html")));
     let bytes: Vec<_> = written.iter().map(|path| fs::read(path).unwrap()).collect();
-    assert_eq!(report(&dir).unwrap(), written);
+    assert_eq!(write(&dir).unwrap(), written);
     for (path, bytes) in written.iter().zip(&bytes) {
         assert!(fs::read(path).unwrap() == *bytes, "{}", path.display());
         if path.extension().is_some_and(|ending| ending == "png") {
@@ -273,7 +231,7 @@ fn a_report_is_complete_and_the_same_every_time() {
 fn the_page_stands_alone_and_says_what_it_must() {
     let dir = scratch("report-7");
     run_folder(&dir, 7);
-    report(&dir).unwrap();
+    write(&dir).unwrap();
     let page = fs::read_to_string(dir.join("report.html")).unwrap();
     for fetch in ["http:", "https:", "src=", "href=", "@import", "url("] {
         assert!(!page.contains(fetch), "{fetch}");
@@ -334,16 +292,18 @@ fn sweep_points_are_series_of_their_own() {
 #[test]
 fn runs_that_cannot_be_reported_say_why() {
     let dir = scratch("report-wrong");
-    let missing = report(&dir).unwrap_err().to_string();
+    let missing = write(&dir).unwrap_err().to_string();
     assert!(missing.contains("report-wrong"), "{missing}");
-    drop(RunFolder::open(&dir, "", "").unwrap());
-    assert!(matches!(report(&dir), Err(ReportError::Record(RecordError::Unfinished { .. }))));
-    let run = RunFolder::open(&dir, "", "").unwrap();
+    drop(RunFolder::open(&dir, "", OFFICE).unwrap());
+    assert!(matches!(write(&dir), Err(ReportError::Record(RecordError::Unfinished { .. }))));
+    let run = RunFolder::open(&dir, "", OFFICE).unwrap();
     run.finish([], Provenance::default()).unwrap();
-    report(&dir).unwrap();
+    write(&dir).unwrap();
     assert!(fs::read_to_string(dir.join("report.html")).unwrap().contains("The run holds no tests"));
-    let refused = write_with(&dir, |_, _| Err::<World, _>("line 3: no rooms")).unwrap_err().to_string();
-    assert!(refused.contains("world.toml") && refused.contains("line 3"), "{refused}");
+    let dir = scratch("report-worldless");
+    RunFolder::open(&dir, "", "size = 3\n").unwrap().finish([], Provenance::default()).unwrap();
+    let refused = write(&dir).unwrap_err().to_string();
+    assert!(refused.contains("world.toml") && refused.contains("size"), "{refused}");
     assert!(raster::png("not a drawing").is_err());
 }
 

@@ -13,8 +13,9 @@ pub mod resample;
 pub mod statistics;
 pub mod summary;
 
+use crate::config::ConfigError;
 use crate::record::{FinishedRun, RecordError, atomic, folder, places, tables};
-use crate::world::World;
+use crate::world::load;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -29,14 +30,9 @@ pub enum ReportError {
     /// The run folder cannot be read or written.
     #[error(transparent)]
     Record(#[from] RecordError),
-    /// The run folder's floor plan cannot be read.
-    #[error("{}: {problem}. The run was made by another version of skilltree: use that one", path.display())]
-    World {
-        /// The floor plan's path.
-        path: PathBuf,
-        /// What the reader of floor plans says.
-        problem: String,
-    },
+    /// The run folder's floor plan cannot be read: another version of skilltree made the run.
+    #[error("{0}\nThe run was made by another version of skilltree: use that one")]
+    World(#[from] ConfigError),
     /// A figure could not be turned into PNG.
     #[error("a figure could not be drawn: {0}. This is a bug in skilltree: please report it")]
     Drawing(String),
@@ -45,19 +41,14 @@ pub enum ReportError {
     Page(String),
 }
 
-/// Writes `figures/*.svg`, `figures/*.png` and `report.html` into a complete run folder and returns their paths. The
-/// floor plan's text is read by `parse`, which gets the file's path for its messages.
+/// Writes `figures/*.svg`, `figures/*.png` and `report.html` into a complete run folder and returns their paths.
 ///
 /// # Errors
 /// If the folder is not a complete run, in use, damaged or not writable. Each file is written whole or not at all.
-pub fn write_with<E: std::fmt::Display>(
-    dir: &Path,
-    parse: impl FnOnce(&str, &Path) -> Result<World, E>,
-) -> Result<Vec<PathBuf>, ReportError> {
+pub fn write(dir: &Path) -> Result<Vec<PathBuf>, ReportError> {
     let run = FinishedRun::read(dir)?;
     let _lock = folder::lock(dir)?;
-    let path = dir.join(folder::WORLD);
-    let world = parse(run.world(), &path).map_err(|error| ReportError::World { path, problem: error.to_string() })?;
+    let world = load::parse(run.world(), &dir.join(folder::WORLD))?;
     let (names, rows) = match run.path(tables::EVALUATIONS) {
         Some(path) => tables::read_evaluations(&path)?,
         None => Default::default(),

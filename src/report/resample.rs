@@ -1,32 +1,44 @@
 //! The random draws of the bootstrap: seeded, so that a report comes out the same every time.
 
-/// Draws indices uniformly and without bias (SplitMix64, rejection). Nothing in an experiment depends on it.
+use crate::math::rng::philox;
+
+/// Draws indices uniformly and without bias. Nothing in an experiment depends on it.
 #[derive(Debug, Clone)]
-pub struct Resampler(u64);
+pub struct Resampler {
+    seed: u32,
+    /// Number of the next block of four words.
+    block: u64,
+    words: [u32; 4],
+    /// Words of the block that are not used yet.
+    left: usize,
+}
 
 impl Resampler {
     /// The same seed gives the same draws.
-    pub fn new(seed: u64) -> Self {
-        Self(seed)
+    pub fn new(seed: u32) -> Self {
+        Self { seed, block: 0, words: [0; 4], left: 0 }
     }
 
-    /// Uniform in `0..count`; 0 if `count` is 0.
+    /// Uniform in `0..count`; 0 if `count` is 0. Counts above `u32::MAX` are taken as that.
     pub fn index(&mut self, count: usize) -> usize {
-        let count = count as u64;
+        let count = u32::try_from(count).unwrap_or(u32::MAX);
         // Multiply and keep the high half; the few low halves that would favour some indices are drawn again.
         let unfair = count.wrapping_neg().checked_rem(count).unwrap_or(0);
         loop {
-            let wide = u128::from(self.next()) * u128::from(count);
-            if wide as u64 >= unfair {
-                return (wide >> 64) as usize;
+            let wide = u64::from(self.word()) * u64::from(count);
+            if wide as u32 >= unfair {
+                return (wide >> 32) as usize;
             }
         }
     }
 
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+    fn word(&mut self) -> u32 {
+        if self.left == 0 {
+            self.words = philox([self.block as u32, (self.block >> 32) as u32, 0, 0], [self.seed, 0]);
+            self.block += 1;
+            self.left = 4;
+        }
+        self.left -= 1;
+        self.words[3 - self.left]
     }
 }
