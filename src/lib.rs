@@ -1,6 +1,7 @@
 //! skilltree
 pub mod advance;
 pub mod backend;
+pub mod cli;
 pub mod config;
 pub mod evaluate;
 pub mod experiment;

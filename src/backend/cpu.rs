@@ -151,6 +151,14 @@ impl Backend for CpuBackend {
         format!("cpu ({threads} thread{s}, {})", self.instructions.name())
     }
 
+    fn kind(&self) -> &'static str {
+        "cpu"
+    }
+
+    fn adapter(&self) -> Option<String> {
+        None
+    }
+
     fn cohort_size(&self, _largest_stride: usize, _bytes_per_learner: usize) -> usize {
         COHORT.max(self.pool.current_num_threads() * 4)
     }

@@ -67,6 +67,12 @@ pub trait Backend {
     /// What to call it in messages and manifests, such as `cpu, 2 threads`.
     fn describe(&self) -> String;
 
+    /// `cpu` or `gpu`.
+    fn kind(&self) -> &'static str;
+
+    /// The adapter's name, if there is one.
+    fn adapter(&self) -> Option<String>;
+
     /// Learners that best train together, given the words that one learner takes in the largest buffer and
     /// the bytes that it takes in all. No result depends on it.
     fn cohort_size(&self, largest_stride: usize, bytes_per_learner: usize) -> usize;

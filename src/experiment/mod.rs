@@ -3,6 +3,9 @@
 //! Learners are independent, so how they are grouped, in which order they train, and how often the run is
 //! interrupted changes no byte of any result.
 
+pub mod files;
 pub mod group;
 pub mod result;
+pub mod run;
+pub mod senses;
 pub mod train;

@@ -4,6 +4,9 @@ use super::RecordError;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
+/// The file's name in a run folder.
+pub const FILE: &str = "places.json";
+
 /// One reading of the sensors at a named place. Keys that are not listed here are allowed and ignored.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlaceReading {

@@ -22,7 +22,6 @@ use std::path::{Path, PathBuf};
 /// File name of the page.
 pub const PAGE: &str = "report.html";
 const FIGURES: &str = "figures";
-const PLACES: &str = "places.json";
 
 /// An error in making a report.
 #[derive(Debug, thiserror::Error)]
@@ -53,7 +52,7 @@ pub fn write(dir: &Path) -> Result<Vec<PathBuf>, ReportError> {
         Some(path) => tables::read_evaluations(&path)?,
         None => Default::default(),
     };
-    let readings = match run.path(PLACES) {
+    let readings = match run.path(places::FILE) {
         Some(path) => {
             let bytes = fs::read(&path).map_err(RecordError::unreadable(&path))?;
             places::read_places(&bytes, &path)?

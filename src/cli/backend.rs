@@ -1,0 +1,46 @@
+//! Which backend executes the kernels.
+
+use crate::backend::cpu::CpuBackend;
+use crate::backend::{Backend, BackendError};
+use clap::{Args, ValueEnum};
+
+/// Where the kernels are executed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum Choice {
+    /// A real GPU if there is an exact one, else the CPU.
+    Auto,
+    /// The CPU, on all cores.
+    Cpu,
+    /// A GPU; a software adapter if there is no other.
+    Gpu,
+}
+
+/// Options that choose and tune a backend. None of them changes a result.
+#[derive(Debug, Args)]
+pub(super) struct BackendArguments {
+    /// Where to execute: a real and exact GPU if there is one (auto), the CPU, or a GPU.
+    #[arg(long, value_enum, default_value = "auto", value_name = "WHERE")]
+    pub(super) backend: Choice,
+    /// Part of an adapter's name, as `skilltree devices` lists them; chooses it even if it is software.
+    #[arg(long, value_name = "NAME")]
+    adapter: Option<String>,
+    /// Threads of the CPU backend; 0 is one per core.
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    threads: usize,
+    /// Quanta (steps or replayed transitions) of each learner per dispatch; found out if not given.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    quanta: Option<u32>,
+}
+
+impl BackendArguments {
+    /// Opens the backend and says what it is.
+    pub(super) fn open(&self) -> Result<Box<dyn Backend>, BackendError> {
+        if self.threads > 1024 {
+            return Err(BackendError::Unavailable {
+                message: format!("--threads {} is more than 1024", self.threads),
+                hint: "leave --threads out to use one per core".to_owned(),
+            });
+        }
+        Ok(Box::new(CpuBackend::new(self.threads, self.quanta)?))
+    }
+}

@@ -1,0 +1,56 @@
+//! What the user is told when a command fails, and the exit code.
+
+use crate::backend::BackendError;
+use crate::config::ConfigError;
+use crate::experiment::group::SetupError;
+use crate::experiment::run::RunError;
+use crate::record::RecordError;
+use crate::report::ReportError;
+
+/// An error as the user sees it.
+#[derive(Debug, thiserror::Error)]
+pub enum Failure {
+    /// Wrong usage of the command line: message and hint.
+    #[error("{message}\nhint: {hint}")]
+    Usage {
+        /// What is wrong.
+        message: String,
+        /// What to do.
+        hint: String,
+    },
+    /// A config or world file, or a `--set`, is wrong.
+    #[error(transparent)]
+    Config(#[from] ConfigError),
+    /// The experiment cannot be set up as it stands in the config.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// A backend cannot be had, or failed.
+    #[error(transparent)]
+    Backend(#[from] BackendError),
+    /// A run folder cannot be read or written.
+    #[error(transparent)]
+    Record(#[from] RecordError),
+    /// A report cannot be made.
+    #[error(transparent)]
+    Report(#[from] ReportError),
+}
+
+impl Failure {
+    /// Exit code: 2 usage or config, 75 run again, 1 anything else.
+    pub fn code(&self) -> u8 {
+        match self {
+            Self::Usage { .. } | Self::Config(_) | Self::Setup(_) => 2,
+            Self::Backend(BackendError::Device { .. }) => 75,
+            Self::Backend(_) | Self::Record(_) | Self::Report(_) => 1,
+        }
+    }
+}
+
+impl From<RunError> for Failure {
+    fn from(error: RunError) -> Self {
+        match error {
+            RunError::Record(error) => Self::Record(error),
+            RunError::Backend(error) => Self::Backend(error),
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! The command line: one file per command.
+
+mod backend;
+mod failure;
+mod probe;
+mod progress;
+mod report;
+mod run;
+
+pub use failure::Failure;
+
+use clap::{Parser, Subcommand};
+
+/// Trains thousands of small robots at once, each learning its own tree of skills by reinforcement, with
+/// the same bytes on any exact GPU and on the CPU.
+#[derive(Debug, Parser)]
+#[command(
+    name = "skilltree",
+    version,
+    max_term_width = 110,
+    after_help = "Start with:  skilltree run configs/quick.toml\n\n\
+        Exit codes: 0 done; 2 wrong usage or config; 75 give the same command again; 1 anything else."
+)]
+pub struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Run(run::Arguments),
+    Report(report::Arguments),
+    Probe(probe::Arguments),
+}
+
+/// Carries out what the user typed.
+///
+/// # Errors
+/// [`Failure`] holds the message for the user and the exit code.
+pub fn run(cli: Cli) -> Result<(), Failure> {
+    match cli.command {
+        Command::Run(arguments) => run::run(&arguments),
+        Command::Report(arguments) => report::report(&arguments),
+        Command::Probe(arguments) => probe::probe(&arguments),
+    }
+}

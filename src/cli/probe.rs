@@ -1,0 +1,180 @@
+//! `skilltree probe`: one robot under given actions, and all that it senses.
+
+use super::Failure;
+use crate::backend::Backend;
+use crate::backend::cpu::CpuBackend;
+use crate::config::plan::Action;
+use crate::config::{Overrides, load};
+use crate::experiment::senses::{SILENT, Senses, floor_only, robot_at};
+use crate::learner::layout::Robot;
+use crate::robot::motion::{COLLISION, DOCKED};
+use crate::world::{Pose, World};
+use clap::ValueEnum;
+use glam::Vec2;
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// Puts a robot somewhere, lets it act, and prints its pose and all sensor readings.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Example:\n  \
+    skilltree probe configs/docking.toml --at 60,60,225 --actions \"move+12,turn-15,move+12\" --noise off")]
+pub(super) struct Arguments {
+    /// The experiment, for its world and noise.
+    config: PathBuf,
+    /// Where it starts: inches to the right, inches up, heading in degrees (0 = east, counter-clockwise); or
+    /// the name of a place of the world.
+    #[arg(long, value_name = "X,Y,HEADING", allow_hyphen_values = true)]
+    at: String,
+    /// What it does, in order: turn+15, turn-15, turn+60, turn-60, move+12, move-12.
+    #[arg(long, value_name = "ACTIONS", default_value = "", allow_hyphen_values = true)]
+    actions: String,
+    /// Whether actuators and sensors are noisy as in the config.
+    #[arg(long, value_enum, default_value = "on")]
+    noise: Noisy,
+    /// Picks the random numbers of the noise.
+    #[arg(long, default_value_t = 0)]
+    seed: u32,
+    /// One JSON object per line: the start pose, then one per action.
+    #[arg(long)]
+    json: bool,
+    /// Sets a key of the config, such as `robot.noise.sonar=0.2`; may be given several times.
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Noisy {
+    On,
+    Off,
+}
+
+/// One line of output.
+#[derive(Debug, Serialize)]
+struct Reading {
+    x: f32,
+    y: f32,
+    heading: f32,
+    room: Option<String>,
+    sonar: [u32; 24],
+    light: [u8; 24],
+    bumpers: [u8; 4],
+    compass: f32,
+    blocked: bool,
+    docked: bool,
+}
+
+pub(super) fn probe(arguments: &Arguments) -> Result<(), Failure> {
+    let plan = load(&arguments.config, &Overrides { set: arguments.set.clone(), seeds: None })?;
+    let pose = pose_of(&arguments.at, &plan.world)?;
+    let actions = actions_of(&arguments.actions)?;
+    let noise = if arguments.noise == Noisy::Off { SILENT } else { plan.arms[0].noise };
+    let shared = floor_only(&plan.world);
+    let mut backend = CpuBackend::new(1, None)?;
+    let mut robot = robot_at(pose, &noise, plan.run_seed, arguments.seed);
+    for action in std::iter::once(None).chain(actions.into_iter().map(Some)) {
+        if let Some(action) = action {
+            robot.action = action as u32;
+        }
+        robot.events = 0;
+        backend.step(&shared, std::slice::from_mut(&mut robot), 1)?;
+        let reading = reading_of(&robot, &plan.world);
+        if arguments.json {
+            let line = serde_json::to_string(&reading).map_err(|error| Failure::Usage {
+                message: format!("the reading has no JSON form: {error}"),
+                hint: "this is a bug in skilltree: please report it".to_owned(),
+            })?;
+            println!("{line}");
+        } else {
+            print!("{}", text_of(action, &reading));
+        }
+    }
+    Ok(())
+}
+
+fn reading_of(robot: &Robot, world: &World) -> Reading {
+    let senses = Senses::of(robot);
+    let room = world.room_of(Vec2::new(robot.x, robot.y)).map(|room| world.rooms[room].name.clone());
+    Reading {
+        x: robot.x,
+        y: robot.y,
+        heading: robot.heading,
+        room,
+        sonar: senses.sonar,
+        light: senses.light,
+        bumpers: senses.bumpers,
+        compass: senses.compass,
+        blocked: robot.events & (COLLISION | DOCKED) != 0,
+        docked: robot.events & DOCKED != 0,
+    }
+}
+
+fn text_of(action: Option<Action>, reading: &Reading) -> String {
+    let list = |values: &[u32]| values.iter().map(u32::to_string).collect::<Vec<_>>().join(" ");
+    let bits = |values: &[u8]| values.iter().map(|bit| if *bit == 1 { '*' } else { '.' }).collect::<String>();
+    let name = action.map_or("start", Action::name);
+    let room = reading.room.as_deref().unwrap_or("none");
+    let outcome = match (reading.docked, reading.blocked) {
+        (true, _) => "  DOCKED",
+        (false, true) => "  blocked",
+        (false, false) => "",
+    };
+    format!(
+        "{name:8} x {:.2}  y {:.2}  heading {:.1}  room {room}{outcome}\n\
+        \x20 sonar   {}\n\
+        \x20 light   {}  (front first, counter-clockwise)\n\
+        \x20 bumpers {}  (front left back right)\n\
+        \x20 compass {:.1}\n",
+        reading.x,
+        reading.y,
+        reading.heading,
+        list(&reading.sonar),
+        bits(&reading.light),
+        bits(&reading.bumpers),
+        reading.compass,
+    )
+}
+
+fn usage(message: String, hint: &str) -> Failure {
+    Failure::Usage { message, hint: hint.to_owned() }
+}
+
+/// A pose or the name of a place, checked to be free.
+fn pose_of(text: &str, world: &World) -> Result<Pose, Failure> {
+    if let Some((_, pose)) = world.places.iter().find(|(name, _)| name == text) {
+        return Ok(*pose);
+    }
+    let places: Vec<&str> = world.places.iter().map(|(name, _)| name.as_str()).collect();
+    let hint = format!("write --at X,Y,HEADING, as in --at 60,60,225, or the name of a place: {}", places.join(", "));
+    let numbers: Vec<f32> = text.split(',').filter_map(|part| part.trim().parse().ok()).collect();
+    let [x, y, heading] = numbers[..] else {
+        return Err(usage(format!("--at {text}: not three numbers"), &hint));
+    };
+    if text.split(',').count() != 3 || !(x.is_finite() && y.is_finite() && heading.is_finite()) {
+        return Err(usage(format!("--at {text}: not three finite numbers"), &hint));
+    }
+    let point = Vec2::new(x, y);
+    if !world.is_free(point) {
+        let message = format!("--at {text}: a robot does not fit there (clearance {:.1} in)", world.clearance(point));
+        let hint = format!(
+            "its radius is 12 in and the world is {} x {} in; keep clear of walls and boxes",
+            world.size.x, world.size.y
+        );
+        return Err(usage(message, &hint));
+    }
+    // rem_euclid of a tiny negative angle rounds to 360.
+    let wrapped = heading.rem_euclid(360.0);
+    Ok(Pose { x, y, heading: if wrapped < 360.0 { wrapped } else { 0.0 } })
+}
+
+fn actions_of(text: &str) -> Result<Vec<Action>, Failure> {
+    let names: Vec<&str> = Action::ALL.iter().map(|action| action.name()).collect();
+    text.split(',')
+        .map(str::trim)
+        .filter(|name| !name.is_empty())
+        .map(|name| {
+            Action::ALL.into_iter().find(|action| action.name() == name).ok_or_else(|| {
+                usage(format!("--actions: no action is called `{name}`"), &format!("choose among {}", names.join(", ")))
+            })
+        })
+        .collect()
+}

@@ -1,0 +1,98 @@
+//! `skilltree run`: trains, evaluates, records, reports.
+
+use super::Failure;
+use super::backend::BackendArguments;
+use super::progress::RunProgress;
+use crate::config::plan::Plan;
+use crate::config::{Overrides, load};
+use crate::experiment::group::groups;
+use crate::experiment::run::{Options, run as run_experiment};
+use crate::record::{Provenance, RunFolder, State, folder};
+use crate::report;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Trains, tests, records and reports an experiment. The same command again continues where an interrupted
+/// run stopped, or says that the run is complete.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:\n  \
+    skilltree run configs/quick.toml\n  \
+    skilltree run configs/docking.toml --seeds 0..256 --out runs/docking-256\n  \
+    skilltree run configs/docking.toml --set skill.dock.trials=50 --set 'arms=[\"taught-adam\"]'\n\n\
+    No choice of backend, threads, cohort or quanta changes a byte of the results.")]
+pub(super) struct Arguments {
+    /// The experiment: a TOML file.
+    config: PathBuf,
+    /// Seeds, instead of the config's: `0..7`, `5`, `1,2,5..9`.
+    #[arg(long, value_name = "SEEDS")]
+    seeds: Option<String>,
+    /// Sets a key of the config, such as `learning.rate=0.01`; may be given several times.
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    #[command(flatten)]
+    backend: BackendArguments,
+    /// Learners that train together; found out if not given.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    cohort: Option<u32>,
+    /// The run folder; `runs/` and the config's name if not given.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let overrides = Overrides { set: arguments.set.clone(), seeds: arguments.seeds.clone() };
+    let plan = load(&arguments.config, &overrides)?;
+    let out = arguments.out.clone().unwrap_or_else(|| Path::new("runs").join(&plan.name));
+    let run_folder = RunFolder::open(&out, &plan.resolved, &plan.world_text)?;
+    if run_folder.state() == State::Complete {
+        drop(run_folder);
+        println!("{} is complete: nothing is left to run.", out.display());
+        return conclude(&out);
+    }
+    let started = Instant::now();
+    let mut backend = arguments.backend.open()?;
+    let (learners, trials) = size(&plan);
+    eprintln!("{}", if plan.title.is_empty() { &plan.name } else { &plan.title });
+    eprintln!("{learners} learners: {} arms, {} seeds; world `{}`", plan.arms.len(), plan.seeds.len(), plan.world.name);
+    eprintln!("backend: {}", backend.describe());
+    if run_folder.state() == State::Partial {
+        eprintln!("continuing the run in {}", out.display());
+    }
+    let groups = groups(&plan)?;
+    let options = Options { cohort: arguments.cohort.map(|cohort| cohort as usize) };
+    let mut progress = RunProgress::new(learners, trials);
+    let provenance = Provenance {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        commit: option_env!("SKILLTREE_COMMIT").map(str::to_owned),
+        backend: backend.kind().to_owned(),
+        adapter: backend.adapter(),
+        seeds: plan.seeds.clone(),
+        started: None,
+        finished: None,
+        notes: BTreeMap::from([("executed by".to_owned(), backend.describe())]),
+    };
+    let outcome = run_experiment(&plan, &groups, run_folder, backend.as_mut(), options, provenance, &mut progress);
+    progress.finish();
+    outcome?;
+    eprintln!("trained and tested in {:.1} s", started.elapsed().as_secs_f64());
+    conclude(&out)
+}
+
+/// Learners of a plan, and trials of all of them together.
+fn size(plan: &Plan) -> (usize, u64) {
+    let trials: u64 = plan.arms.iter().flat_map(|arm| &arm.skills).map(|skill| u64::from(skill.trials)).sum();
+    (plan.arms.len() * plan.seeds.len(), trials * plan.seeds.len() as u64)
+}
+
+/// Makes the report of a complete run and says where everything is.
+fn conclude(out: &Path) -> Result<(), Failure> {
+    report::write(out)?;
+    print!("{}", report::text(out)?);
+    println!("tables:  {}", out.join("trials.parquet").display());
+    println!("         {}", out.join("evaluations.parquet").display());
+    println!("nets:    {}", out.join("skills").display());
+    println!("config:  {}", out.join(folder::CONFIG).display());
+    println!("report:  {}", out.join(report::PAGE).display());
+    Ok(())
+}
