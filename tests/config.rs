@@ -82,6 +82,13 @@ fn quick_has_the_same_arms_and_fewer_trials() {
 }
 
 #[test]
+fn every_office_serves_the_docking_config() {
+    for name in ["office", "office-easy", "office-hard"] {
+        assert_eq!(docking(&[&format!("world=worlds/{name}.toml")]).world.name, name);
+    }
+}
+
+#[test]
 fn every_default_is_read_and_in_range() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("small.toml");
@@ -225,7 +232,7 @@ fn mistakes_on_the_command_line_name_it() {
         ("lerning.rate=0.1", "unknown key `lerning`", "did you mean `learning`"),
         ("learning.rate=fast", "must be a number, not a string", "more than 0 and at most 10"),
         ("learning.rate=0", "out of range", "more than 0"),
-        ("learning.rate=1e-60", "out of range", "more than 0"),
+        ("learning.rate=1e-60", "is 1e-60, which is out of range", "more than 0"),
         ("learning.rate=nan", "`nan` is not a number", "finite"),
         ("learning.rate=-inf", "`-inf` is not a number", "finite"),
         ("learning.gamma=1.5", "out of range", "between 0 and 1"),
@@ -415,6 +422,13 @@ fn files_that_cannot_be_read_are_named() {
     ] {
         let (result, _) = attempt(text, WORLD);
         println!("{}\n", result.expect_err(text));
+    }
+    for (arms, message) in [("[arm]\n", "there are no arms"), ("", "")] {
+        let (result, _) = attempt(&format!("{}{arms}", &FILE[..FILE.find("[arm.one]").expect("arms")]), WORLD);
+        match result {
+            Ok(plan) => assert_eq!((plan.arms[0].name.as_str(), message), ("base", "")),
+            Err(error) => assert_eq!(error.message(), message, "{error}"),
+        }
     }
     let (result, _) = attempt("world = 'world.toml'\n", WORLD);
     let error = result.expect_err("no skill");

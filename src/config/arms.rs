@@ -52,6 +52,10 @@ impl Arms<'_> {
                 }
             }
         }
+        if arms.is_empty() {
+            let hint = "add [arm.NAME], or remove [arm] to run the config as it stands";
+            return Err(self.own.unwrap_or(self.base).origin.error("there are no arms", hint));
+        }
         idle.finish()?;
         match chosen {
             Some(chosen) => select(arms, &chosen),

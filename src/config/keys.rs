@@ -151,6 +151,7 @@ keys! {
     EVALUATE_AT = "evaluate.at", Some("[0, 25, 50, 75, 100, 150, 200, 250, 300]"), Other("ascending whole numbers"), Ours, "trials of a skill after which it is tested; it always is after its last one";
     EVALUATE_EPISODES = "evaluate.episodes", Some("100"), Whole(1, 10_000), Ours, "greedy test trials each time";
     TEACHER_BANK = "teacher.bank", Some("256"), Whole(1, MANY), Ours, "lessons in the bank of each skill; learners draw theirs from it";
+    TEACHER_DISCOUNT = "teacher.discount", Some("0.95"), Number(Bounds::inside(0.0, 1.0)), Ours, "discount factor of the planner, its own, so that arms that differ in theirs share a teacher";
     TEACHER_BACKWARD_COST = "teacher.backward_cost", Some("5.0"), Number(Bounds::between(0.0, 1000.0)), Ours, "what the demonstrator puts on backing up, in units of reward, so that it drives as a person would";
     TEACHER_EPISODES = "teacher.episodes", Some("1000"), Whole(1, MANY), Ours, "test trials of the planner itself";
 

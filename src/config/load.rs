@@ -1,9 +1,8 @@
 //! From a config file and what the command line adds to a [`Plan`].
 //!
 //! Four layers, each over the one before: defaults, the file, `--set`, and an arm's own table (into which
-//! `--set arm.NAME.key=value` goes first). So a `--set` on a base key wins over the file's base key, and an arm's own
-//! override of that key, being more specific, still holds in that arm. Within a skill, `skill.NAME.learning` lies over
-//! `learning` in the same way.
+//! `--set arm.NAME.key=value` goes first). Within a skill, `skill.NAME.learning` lies over `learning`, also over an
+//! arm's: what names the skill is more specific.
 
 use super::arms::Arms;
 use super::error::ConfigError;
@@ -19,14 +18,13 @@ use std::sync::Arc;
 /// What the command line changes in a config.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Overrides {
-    /// `key=value` of each `--set`, in order.
+    /// `key=value` of each `--set`, in order: `learning.rate=0.01`, `skill.dock.trials=20`,
+    /// `arm.taught-sgd.learning.rate=0.1`. A later one wins. One on a base key wins over the file's base key, but an
+    /// arm's own override of that key, being more specific, still holds in that arm.
     pub set: Vec<String>,
     /// The value of `--seeds`, which wins over the file and over `--set`.
     pub seeds: Option<String>,
 }
-
-/// Opens every resolved config.
-const HEADER: &str = "# Resolved by skilltree: defaults, config file and command line together.\n";
 
 /// Reads a config file, the world file that it names, and the command line's changes.
 pub fn load(path: &Path, overrides: &Overrides) -> Result<Plan, ConfigError> {
@@ -111,6 +109,7 @@ fn teacher(root: &Table<'_>) -> Result<Teacher, ConfigError> {
     let section = Section(root.required("teacher", "{}")?.table()?);
     let teacher = Teacher {
         bank: section.whole(&keys::TEACHER_BANK)?,
+        discount: section.number(&keys::TEACHER_DISCOUNT)?,
         backward_cost: section.number(&keys::TEACHER_BACKWARD_COST)?,
         episodes: section.whole(&keys::TEACHER_EPISODES)?,
     };
@@ -144,5 +143,5 @@ fn resolve(mut base: Node, name: &str, arms: Option<Node>) -> String {
     if let Some(arms) = arms {
         base.put("arm", arms);
     }
-    format!("{HEADER}{}", write::document(&base))
+    format!("# Resolved by skilltree: defaults, config file and command line together.\n{}", write::document(&base))
 }

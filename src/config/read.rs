@@ -45,7 +45,10 @@ impl<'a> Item<'a> {
             _ => return Err(self.wrong("a number", &format!("use a number {bounds}"))),
         };
         if !bounds.holds(value) {
-            let message = format!("`{}` is {value}, which is out of range", self.name);
+            // Plain notation would fill the line with zeros.
+            let long = value != 0.0 && !(1e-4..1e15).contains(&value.abs());
+            let shown = if long { format!("{value:e}") } else { value.to_string() };
+            let message = format!("`{}` is {shown}, which is out of range", self.name);
             return Err(self.error(message, format!("use a number {bounds}")));
         }
         Ok(value)

@@ -175,16 +175,16 @@ fn ends(item: &Item<'_>, world: &World) -> Result<u32, ConfigError> {
 fn region(name: &str, place: &Place<'_>, world: &World) -> Result<String, ConfigError> {
     let names = world.region_names();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    match world.region_cells(name) {
+    match world.region_is_empty(name) {
         None => {
             let message = format!("the world `{}` has no region `{name}`", world.name);
             Err(place(message, suggest(name, "regions", &names)))
         }
-        Some(cells) if cells.is_empty() => {
+        Some(true) => {
             let hint = "no part of it is 14 inches from everything solid; enlarge it or choose another one";
             Err(place(format!("the robot fits nowhere in the region `{name}`"), hint.to_owned()))
         }
-        Some(_) => Ok(name.to_owned()),
+        Some(false) => Ok(name.to_owned()),
     }
 }
 
