@@ -245,6 +245,7 @@ fn the_page_stands_alone_and_says_what_it_must() {
         "n = 7 seeds",
         "percentile bootstrap",
         "planner (bound)",
+        "until 80% of a seed",
     ] {
         assert!(page.contains(said), "{said}");
     }
@@ -269,6 +270,12 @@ fn seeds_that_are_missing_are_said_not_averaged_over() {
         summary.warnings
     );
     assert!(summary.warnings.iter().any(|text| text.contains("1 of 4 seeds have no tests")), "{:?}", summary.warnings);
+    let reached = summary.skills[0].series[0].trials_to(0.8);
+    assert!(
+        reached.len() == 4 && reached.iter().all(|trials| trials.is_some_and(|trials| trials <= 175)),
+        "{reached:?}"
+    );
+    assert_eq!(summary.skills[0].series[0].trials_to(1.01), [None; 4]);
     let by_hand: u32 = rows
         .iter()
         .filter(|row| row.arm == 4 && row.skill == 1 && row.trials == 300 && row.seed == 2)

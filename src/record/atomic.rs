@@ -17,7 +17,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), RecordError> {
     sync_folder(folder_of(path))
 }
 
-/// As [`write`], without the last fsync: call [`sync_folder`] once after a batch of files.
+/// As [`write()`], without the last fsync: call [`sync_folder`] once after a batch of files.
 ///
 /// # Errors
 /// [`RecordError::NotCommitted`]: the earlier state is intact.

@@ -96,7 +96,7 @@ impl RunFolder {
     /// Commits one cohort's results under a name of letters, digits, `.`, `-`, `_`. Replaces a part of that name whole.
     ///
     /// # Errors
-    /// [`RecordError::Invalid`] for another name or a complete run; otherwise as [`atomic::write`].
+    /// [`RecordError::Invalid`] for another name or a complete run; otherwise as [`atomic::write()`].
     pub fn commit_part(&mut self, name: &str, content: &[u8]) -> Result<(), RecordError> {
         let path = self.part_path(name)?;
         if self.state == State::Complete {
@@ -136,7 +136,7 @@ impl RunFolder {
     ///
     /// # Errors
     /// [`RecordError::Invalid`] for a path that leaves the folder, is taken or comes twice, or if the run is complete;
-    /// otherwise as [`atomic::write`]. After an error the parts are still there, so that the run can be resumed.
+    /// otherwise as [`atomic::write()`]. After an error the parts are still there, so that the run can be resumed.
     pub fn finish<Files>(self, files: Files, provenance: Provenance) -> Result<Manifest, RecordError>
     where
         Files: IntoIterator<Item = (String, Vec<u8>)>,

@@ -1,7 +1,7 @@
 //! A learner's nets as safetensors, named so that PyTorch loads them.
 //!
 //! The net of child `move+12` in skill `dock` is `torch.nn.Sequential(Linear(I, H), Tanh(), Linear(H, 1), Tanh())`;
-//! its tensors are `dock.q.move+12.0.weight` [H, I], `.0.bias` [H], `.2.weight` [1, H] and `.2.bias` [1].
+//! its tensors are `dock.q.move+12.0.weight` (H by I), `.0.bias` (H), `.2.weight` (1 by H) and `.2.bias` (1).
 
 use super::RecordError;
 use safetensors::tensor::{Dtype, SafeTensors, TensorView};

@@ -6,6 +6,7 @@ use super::statistics::{BAND_RESAMPLES, bootstrap, mean};
 use super::summary::{Cell, Score, Series, Skill, Summary};
 use crate::record::PlaceReading;
 use crate::world::World;
+use rayon::prelude::*;
 
 /// A figure as it goes into a file.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,7 +63,8 @@ const MEASURES: [Measure; 3] = [
 /// All figures of curves.
 pub fn learning(summary: &Summary) -> Vec<Drawing> {
     let trained = summary.skills.iter().filter(|skill| !skill.series.is_empty());
-    trained.flat_map(|skill| MEASURES.iter().map(|measure| draw(skill, measure))).collect()
+    let figures: Vec<_> = trained.flat_map(|skill| MEASURES.iter().map(move |measure| (skill, measure))).collect();
+    figures.into_par_iter().map(|(skill, measure)| draw(skill, measure)).collect()
 }
 
 /// The floor plan and the sensors at its places.

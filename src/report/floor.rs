@@ -90,6 +90,23 @@ fn bearing_point(pose: &Pose, index: usize, distance: f32) -> Vec2 {
     Vec2::new(pose.x, pose.y) + Vec2::from_angle(angle.to_radians()) * distance
 }
 
+/// Where in a room its name is least in the way: far from boxes and places, and near the middle if that is as good.
+fn clearest_point(room: &Rect, world: &World) -> Vec2 {
+    const STEPS: u16 = 12;
+    /// Clearance in inches beyond which a point is as good as any.
+    const ENOUGH: f32 = 34.0;
+    let middle = (room.min + room.max) / 2.0;
+    let clearance = |point: Vec2| {
+        let boxes = world.boxes.iter().map(|area| point.distance(point.clamp(area.min, area.max)));
+        let places = world.places.iter().map(|(_, pose)| point.distance(Vec2::new(pose.x, pose.y)) - 26.0);
+        boxes.chain(places).fold(ENOUGH, f32::min) - point.distance(middle) / 100.0
+    };
+    let share = |i: u16| f32::from(i) / f32::from(STEPS);
+    let grid = (1..STEPS).flat_map(|i| (1..STEPS).map(move |j| Vec2::new(share(i), share(j))));
+    let points = grid.map(|shares| room.min + (room.max - room.min) * shares);
+    points.max_by(|&a, &b| clearance(a).total_cmp(&clearance(b))).unwrap_or(middle)
+}
+
 /// A canvas with the floor's own coordinates.
 struct Floor {
     canvas: Canvas,
@@ -120,8 +137,8 @@ impl Floor {
 
     fn rooms(&mut self, world: &World) {
         for room in &world.rooms {
-            let centre = self.at((room.area.min + room.area.max) / 2.0);
-            self.canvas.text(&room.name, centre, 34.0, ROOM, Anchor::Middle);
+            let clear = self.at(clearest_point(&room.area, world));
+            self.canvas.text(&room.name, clear, 34.0, ROOM, Anchor::Middle);
         }
         for door in &world.doors {
             let along = Vec2::new(-door.normal.y, door.normal.x) * door.width / 2.0;

@@ -16,6 +16,7 @@ pub mod summary;
 use crate::config::ConfigError;
 use crate::record::{FinishedRun, RecordError, atomic, folder, places, tables};
 use crate::world::load;
+use rayon::prelude::*;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -67,10 +68,11 @@ pub fn write(dir: &Path) -> Result<Vec<PathBuf>, ReportError> {
     let folder = dir.join(FIGURES);
     fs::create_dir_all(&folder).map_err(|source| RecordError::NotCommitted { path: folder.clone(), source })?;
     let mut written = Vec::new();
-    for figure in &drawings {
-        for (ending, bytes) in [("svg", figure.svg.clone().into_bytes()), ("png", raster::png(&figure.svg)?)] {
+    let images: Result<Vec<_>, _> = drawings.par_iter().map(|figure| raster::png(&figure.svg)).collect();
+    for (figure, image) in drawings.iter().zip(images?) {
+        for (ending, bytes) in [("svg", figure.svg.as_bytes()), ("png", image.as_slice())] {
             let path = folder.join(format!("{}.{ending}", figure.name));
-            atomic::place(&path, &bytes)?;
+            atomic::place(&path, bytes)?;
             written.push(path);
         }
     }

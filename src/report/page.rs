@@ -15,6 +15,9 @@ use minijinja::{AutoEscape, Environment, UndefinedBehavior, Value, context};
 /// while they still learn.
 const EARLY_TRIALS: u32 = 150;
 
+/// Success that counts as having learned, in the table of trials to criterion.
+const CRITERION: f64 = 0.8;
+
 /// Renders the page.
 ///
 /// # Errors
@@ -50,6 +53,7 @@ fn fill(run: &FinishedRun, summary: &Summary, figures: &[Drawing]) -> Result<Str
         warnings => warnings(summary),
         skills => skills.collect::<Vec<_>>(),
         floor => of(None),
+        criterion => format!("{:.0}%", 100.0 * CRITERION),
         resamples => number(TABLE_RESAMPLES as f64),
     })
 }
@@ -68,6 +72,7 @@ fn skill_part(skill: &Skill, figures: Vec<Value>) -> Value {
         rows => rows.collect::<Vec<_>>(),
         planner => skill.planner.as_ref().map(planner),
         differences => differences,
+        criterion => skill.series.iter().map(criterion_row).collect::<Vec<_>>(),
         figures => figures,
     }
 }
@@ -97,6 +102,24 @@ fn row(label: &str, cell: &Cell) -> Value {
         failing => percent(share_below(&success, 0.5)),
         steps => with(mean(&steps), bootstrap(&steps, mean, TABLE_RESAMPLES), 1),
         collisions => format!("{:.4}", mean(&cell.values(Score::collisions_per_step))),
+    }
+}
+
+/// A row of a skill's table of trials to criterion.
+fn criterion_row(series: &Series) -> Value {
+    let mut trials = series.trials_to(CRITERION);
+    // Seeds that never got there needed more than all others, so they come last.
+    trials.sort_by_key(|trials| trials.unwrap_or(u32::MAX));
+    let at = |share: f64| match trials[((trials.len() - 1) as f64 * share).round() as usize] {
+        Some(trials) => trials.to_string(),
+        None => format!("more than {}", series.last().trials),
+    };
+    context! {
+        arm => series.label.as_str(),
+        reached => format!("{} of {}", trials.iter().flatten().count(), trials.len()),
+        quarter => at(0.25),
+        median => at(0.5),
+        three_quarters => at(0.75),
     }
 }
 

@@ -84,6 +84,14 @@ impl Series {
     pub fn nearest(&self, trials: u32) -> &Cell {
         self.cells.iter().min_by_key(|cell| cell.trials.abs_diff(trials)).unwrap_or_else(|| self.last())
     }
+
+    /// Per seed, the training trials at the first test with at least this success; none if no test reached it. A seed
+    /// without a number is censored, not dropped: it would have needed more than the last test's trials.
+    pub fn trials_to(&self, success: f64) -> Vec<Option<u32>> {
+        let seeds = 0..self.last().scores.len();
+        let first = |seed: usize| self.cells.iter().find(|cell| cell.scores[seed].success() >= success);
+        seeds.map(|seed| first(seed).map(|cell| cell.trials)).collect()
+    }
 }
 
 /// All tests of one skill.
@@ -106,10 +114,13 @@ pub struct Summary {
     pub warnings: Vec<String>,
 }
 
+/// Scores by seed, by training trials.
+type Cells = BTreeMap<u32, BTreeMap<u32, Score>>;
+
 /// Sums the rows over rooms and sorts them by skill, arm, sweep point, trials and seed. A test that some seeds of its
 /// series lack is left out, with a warning: an average over the seeds that happen to be there would mislead.
 pub fn summarise(names: &Names, rows: &[EvaluationRow], seeds: &[u32]) -> Summary {
-    let mut sums: BTreeMap<(u32, u32, u32), BTreeMap<u32, BTreeMap<u32, Score>>> = BTreeMap::new();
+    let mut sums: BTreeMap<(u32, u32, u32), Cells> = BTreeMap::new();
     let mut planner: BTreeMap<u32, Score> = BTreeMap::new();
     for row in rows.iter().filter(|row| row.episodes > 0) {
         if names.arms[row.arm as usize] == PLANNER {
@@ -137,13 +148,7 @@ pub fn summarise(names: &Names, rows: &[EvaluationRow], seeds: &[u32]) -> Summar
     summary
 }
 
-fn complete(
-    skill: &str,
-    label: String,
-    cells: &BTreeMap<u32, BTreeMap<u32, Score>>,
-    seeds: &[u32],
-    warnings: &mut Vec<String>,
-) -> Option<Series> {
+fn complete(skill: &str, label: String, cells: &Cells, seeds: &[u32], warnings: &mut Vec<String>) -> Option<Series> {
     let all: BTreeSet<u32> = cells.values().flat_map(BTreeMap::keys).copied().collect();
     let absent = seeds.iter().filter(|seed| !all.contains(seed)).count();
     if absent > 0 {
