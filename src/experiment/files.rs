@@ -146,7 +146,10 @@ impl Results<'_> {
                     rooms[room].add(test.steps(), test.achieved(), f64::from(test.reward()), test.collisions());
                 }
                 let arm = (self.plan.arms.len() + number) as u32;
-                push(EvaluationRow { arm, skill: self.skill_index(names, group.arms[0], skill as u32), ..blank }, &rooms);
+                push(
+                    EvaluationRow { arm, skill: self.skill_index(names, group.arms[0], skill as u32), ..blank },
+                    &rooms,
+                );
             }
         }
         rows

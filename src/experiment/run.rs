@@ -54,8 +54,7 @@ pub fn run(
     let mut finished: u64 = learners.keys().map(trials_of).sum();
     observer.trials(finished);
     for group in groups {
-        let open: Vec<LearnerId> =
-            group.learners(plan).into_iter().filter(|id| !learners.contains_key(id)).collect();
+        let open: Vec<LearnerId> = group.learners(plan).into_iter().filter(|id| !learners.contains_key(id)).collect();
         let largest = group.shape.nets_stride.max(group.shape.lessons_stride).max(group.shape.rows_stride);
         let size = backend.cohort_size(largest, group.shape.bytes_per_learner());
         for cohort in open.chunks(options.cohort.unwrap_or(size).max(1)) {

@@ -12,6 +12,7 @@ pub mod raster;
 pub mod resample;
 pub mod statistics;
 pub mod summary;
+pub mod text;
 
 use crate::config::ConfigError;
 use crate::record::{FinishedRun, RecordError, atomic, folder, places, tables};
@@ -49,10 +50,7 @@ pub fn write(dir: &Path) -> Result<Vec<PathBuf>, ReportError> {
     let run = FinishedRun::read(dir)?;
     let _lock = folder::lock(dir)?;
     let world = load::parse(run.world(), &dir.join(folder::WORLD))?;
-    let (names, rows) = match run.path(tables::EVALUATIONS) {
-        Some(path) => tables::read_evaluations(&path)?,
-        None => Default::default(),
-    };
+    let summary = summarise(&run)?;
     let readings = match run.path(places::FILE) {
         Some(path) => {
             let bytes = fs::read(&path).map_err(RecordError::unreadable(&path))?;
@@ -60,7 +58,6 @@ pub fn write(dir: &Path) -> Result<Vec<PathBuf>, ReportError> {
         }
         None => Vec::new(),
     };
-    let summary = summary::summarise(&names, &rows, &run.manifest().provenance.seeds);
     let mut drawings = figures::learning(&summary);
     drawings.extend(figures::floor(&world, &readings));
     let page = page::render(&run, &summary, &drawings)?;
@@ -81,4 +78,20 @@ pub fn write(dir: &Path) -> Result<Vec<PathBuf>, ReportError> {
     atomic::write(&path, page.as_bytes())?;
     written.push(path);
     Ok(written)
+}
+
+/// The summary of a complete run as text for a terminal.
+///
+/// # Errors
+/// If the folder is not a complete run or is damaged.
+pub fn text(dir: &Path) -> Result<String, ReportError> {
+    Ok(text::table(&summarise(&FinishedRun::read(dir)?)?))
+}
+
+fn summarise(run: &FinishedRun) -> Result<summary::Summary, ReportError> {
+    let (names, rows) = match run.path(tables::EVALUATIONS) {
+        Some(path) => tables::read_evaluations(&path)?,
+        None => Default::default(),
+    };
+    Ok(summary::summarise(&names, &rows, &run.manifest().provenance.seeds))
 }

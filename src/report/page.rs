@@ -8,12 +8,9 @@ use super::statistics::{
     wilson,
 };
 use super::summary::{Cell, Score, Series, Skill, Summary};
+use super::text::EARLY_TRIALS;
 use crate::record::FinishedRun;
 use minijinja::{AutoEscape, Environment, UndefinedBehavior, Value, context};
-
-/// Besides the last test, the tables show the one nearest to this number of training trials: learners differ most
-/// while they still learn.
-const EARLY_TRIALS: u32 = 150;
 
 /// Success that counts as having learned, in the table of trials to criterion.
 const CRITERION: f64 = 0.8;
