@@ -15,6 +15,9 @@ use rayon::prelude::*;
 /// Quanta of one learner between two looks at the clock: some 10 ms.
 const QUANTA: u32 = 16_384;
 
+/// Learners that train together: few, so that finished ones are committed early.
+const COHORT: usize = 32;
+
 /// Executes the twins on a pool of threads.
 #[derive(Debug)]
 pub struct CpuBackend {
@@ -146,6 +149,10 @@ impl Backend for CpuBackend {
         let threads = self.pool.current_num_threads();
         let s = if threads == 1 { "" } else { "s" };
         format!("cpu ({threads} thread{s}, {})", self.instructions.name())
+    }
+
+    fn cohort_size(&self, _largest_stride: usize, _bytes_per_learner: usize) -> usize {
+        COHORT.max(self.pool.current_num_threads() * 4)
     }
 
     fn load(&mut self, cohort: Cohort) -> Result<(), BackendError> {

@@ -68,6 +68,10 @@ pub trait Backend {
     /// What to call it in messages and manifests, such as `cpu, 2 threads`.
     fn describe(&self) -> String;
 
+    /// Learners that best train together, given the words that one learner takes in the largest buffer and
+    /// the bytes that it takes in all. No result depends on it.
+    fn cohort_size(&self, largest_stride: usize, bytes_per_learner: usize) -> usize;
+
     /// Takes the cohort's memory; everything else works on it until the next load.
     ///
     /// # Errors

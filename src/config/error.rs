@@ -55,6 +55,8 @@ impl ConfigError {
         };
         let reason = match error.kind() {
             std::io::ErrorKind::NotFound => "there is no such file".to_owned(),
+            std::io::ErrorKind::IsADirectory => "it is a folder".to_owned(),
+            std::io::ErrorKind::InvalidData => "it is not text".to_owned(),
             _ => error.to_string(),
         };
         Self::new(Place::File(path.to_owned()), format!("cannot read the {what}: {reason}"), hint)
@@ -107,7 +109,7 @@ impl Complaint {
             Place::Line { path, line, column, width, text } => {
                 let margin = " ".repeat(line.to_string().len());
                 let text = text.replace('\t', " ");
-                let under = format!("{}{}", " ".repeat(column - 1), "^".repeat(*width));
+                let under = format!("{}{}", " ".repeat(column.saturating_sub(1)), "^".repeat(*width));
                 write!(
                     out,
                     "\n{margin}--> {}:{line}:{column}\n{margin} |\n{line} | {text}\n{margin} | {under}",
@@ -126,10 +128,10 @@ impl Complaint {
 
 /// The name of `allowed` that was most likely meant.
 pub(crate) fn nearest<'a>(name: &str, allowed: &[&'a str]) -> Option<&'a str> {
-    let distance = |other: &&str| strsim::damerau_levenshtein(name, other);
+    let distance = |other: &&str| strsim::damerau_levenshtein(&name.to_lowercase(), &other.to_lowercase());
     let best = allowed.iter().copied().min_by_key(distance)?;
     // A third of the letters may be wrong; beyond that a suggestion is a guess.
-    (distance(&best) <= (name.chars().count().max(best.chars().count()) / 3).max(1)).then_some(best)
+    (distance(&best) <= name.chars().count().max(best.chars().count()) / 3).then_some(best)
 }
 
 /// A hint for an unknown name: the likely one, or all that are allowed.
@@ -144,4 +146,38 @@ pub(crate) fn suggest(name: &str, what: &str, allowed: &[&str]) -> String {
 /// The names in back quotes, comma separated.
 pub(crate) fn list(names: &[&str]) -> String {
     names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_count_characters_and_keep_to_one_line() {
+        let text = "a = 1\r\n\tb = \"\u{e9}\u{e9}\" + [\r\n2]\r\n";
+        let start = text.find('+').expect("a plus");
+        let place = Place::of_span(Path::new("f.toml"), text, &(start..text.len()));
+        let Place::Line { line, column, width, text: shown, .. } = &place else { panic!("{place:?}") };
+        assert_eq!((*line, *column, *width, shown.as_str()), (2, 11, 3, "\tb = \"\u{e9}\u{e9}\" + ["));
+        let error = ConfigError::new(place, "no", "yes").to_string();
+        let lines: Vec<&str> = error.lines().collect();
+        assert_eq!(lines[1], " --> f.toml:2:11");
+        assert_eq!(
+            lines[3].find('+').map(|_| lines[3].chars().position(|c| c == '+')),
+            Some(lines[4].chars().position(|c| c == '^'))
+        );
+        // Beyond the end, and inside a character.
+        for span in [500..600, 13..14, 12..13] {
+            assert!(matches!(Place::of_span(Path::new("f"), text, &span), Place::Line { width: 1.., .. }));
+        }
+    }
+
+    #[test]
+    fn suggestions_are_near_or_absent() {
+        assert_eq!(nearest("ligth", &["sonar", "light"]), Some("light"));
+        assert_eq!(nearest("b", &["A", "B"]), Some("B"));
+        assert_eq!(nearest("x", &["A", "B"]), None);
+        assert_eq!(nearest("x", &[]), None);
+        assert_eq!(suggest("x", "rooms", &[]), "there are no rooms here");
+    }
 }

@@ -1,11 +1,22 @@
 //! From what the user typed to a checked, immutable plan.
 //!
-//! `tree` holds TOML with the place of every value, `read` takes typed values out of it and refuses what it
-//! does not know, and every complaint is a [`ConfigError`] that shows the place and a way out.
+//! [`keys`] is the one table of defaults and ranges. `tree` holds TOML with the place of every value, `set` adds what
+//! the command line changes, `read` takes typed values out and refuses what it does not know, and every complaint
+//! is a [`ConfigError`] that shows the place and a way out. [`load()`] puts the layers together.
 
+mod arms;
 pub mod error;
+pub mod keys;
+mod learning;
+mod load;
 pub mod plan;
 pub(crate) mod read;
+mod seeds;
+mod set;
+mod skill;
 pub(crate) mod tree;
+mod write;
 
 pub use error::{ConfigError, Place};
+pub use load::{Overrides, load};
+pub use seeds::parse_seeds;

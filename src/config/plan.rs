@@ -292,6 +292,8 @@ pub struct Evaluate {
 pub struct Teacher {
     /// Lessons in the bank of each skill; learners draw theirs from it.
     pub bank: u32,
+    /// Discount factor of the planner: its own, so that learners with different ones share a teacher.
+    pub discount: f32,
     /// Cost, in reward units, that the demonstrator puts on backing up, so that it drives as a person would.
     pub backward_cost: f32,
     /// Test trials of the planner itself, which give the bound that reports show.

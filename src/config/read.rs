@@ -1,47 +1,13 @@
 //! Takes typed values out of a [`Node`] tree and refuses what nobody asked for.
 
 use super::error::{ConfigError, list, nearest, suggest};
+use super::keys::{Allowed, Bounds, Key};
 use super::tree::{Entry, Node, Origin, Value};
 use std::cell::RefCell;
 
-/// What a number may be.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Bounds {
-    low: f64,
-    high: f64,
-    above: bool,
-    below: bool,
-}
-
-impl Bounds {
-    /// From `low` to `high`, both allowed.
-    pub(crate) const fn between(low: f64, high: f64) -> Self {
-        Self { low, high, above: false, below: false }
-    }
-
-    /// More than `low`, at most `high`.
-    pub(crate) const fn above(low: f64, high: f64) -> Self {
-        Self { low, high, above: true, below: false }
-    }
-
-    /// At least `low`, less than `high`.
-    pub(crate) const fn below(low: f64, high: f64) -> Self {
-        Self { low, high, above: false, below: true }
-    }
-
-    fn holds(self, value: f64) -> bool {
-        let low = if self.above { value > self.low } else { value >= self.low };
-        let high = if self.below { value < self.high } else { value <= self.high };
-        low && high
-    }
-
-    fn describe(self) -> String {
-        match (self.above, self.below) {
-            (false, false) => format!("between {} and {}", self.low, self.high),
-            (true, _) => format!("more than {} and at most {}", self.low, self.high),
-            (false, true) => format!("at least {} and less than {}", self.low, self.high),
-        }
-    }
+/// Whether the text is a short name of letters, digits, `-` and `_`; such names need no quotes in TOML.
+pub(crate) fn is_name(text: &str) -> bool {
+    !text.is_empty() && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '_')
 }
 
 /// A value with its dotted name, for messages.
@@ -76,11 +42,14 @@ impl<'a> Item<'a> {
         let value = match self.node.value {
             Value::Float(value) => value,
             Value::Integer(value) => value as f64,
-            _ => return Err(self.wrong("a number", &format!("use a number {}", bounds.describe()))),
+            _ => return Err(self.wrong("a number", &format!("use a number {bounds}"))),
         };
         if !bounds.holds(value) {
-            let message = format!("`{}` is {value}, which is out of range", self.name);
-            return Err(self.error(message, format!("use a number {}", bounds.describe())));
+            // Plain notation would fill the line with zeros.
+            let long = value != 0.0 && !(1e-4..1e15).contains(&value.abs());
+            let shown = if long { format!("{value:e}") } else { value.to_string() };
+            let message = format!("`{}` is {shown}, which is out of range", self.name);
+            return Err(self.error(message, format!("use a number {bounds}")));
         }
         Ok(value)
     }
@@ -121,7 +90,7 @@ impl<'a> Item<'a> {
     /// A short name of letters, digits, `-` and `_`.
     pub(crate) fn short_name(&self) -> Result<&'a str, ConfigError> {
         let text = self.text()?;
-        if text.is_empty() || !text.chars().all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '_') {
+        if !is_name(text) {
             return Err(self.error(format!("`{text}` cannot be a name"), "use letters, digits, `-` and `_` only"));
         }
         Ok(text)
@@ -147,8 +116,13 @@ impl<'a> Item<'a> {
         }
     }
 
-    /// A list of exactly N finite numbers; `shape` shows them, for the hint.
+    /// A list of exactly N numbers of any reasonable size; `shape` shows them, for the hint.
     pub(crate) fn numbers<const N: usize>(&self, shape: &str) -> Result<[f32; N], ConfigError> {
+        self.numbers_within(shape, Bounds::between(-1e6, 1e6))
+    }
+
+    /// A list of exactly N numbers within bounds.
+    pub(crate) fn numbers_within<const N: usize>(&self, shape: &str, bounds: Bounds) -> Result<[f32; N], ConfigError> {
         let hint = format!("write {shape}");
         let Value::List(_) = &self.node.value else { return Err(self.wrong(&format!("a list of {N} numbers"), &hint)) };
         let items = self.items()?;
@@ -157,7 +131,7 @@ impl<'a> Item<'a> {
         }
         let mut out = [0.0; N];
         for (to, item) in out.iter_mut().zip(&items) {
-            *to = item.number(Bounds::between(-1e6, 1e6))?;
+            *to = item.number(bounds)?;
         }
         Ok(out)
     }
@@ -238,5 +212,55 @@ impl<'a> Table<'a> {
             None => format!("the keys {place} are {}", list(&asked)),
         };
         Err(entry.origin.error(format!("unknown key `{}`", self.name_of(&entry.key)), hint))
+    }
+}
+
+/// A table whose keys are in [`super::keys`], which holds their ranges. Defaults are in the tree already.
+#[derive(Debug)]
+pub(crate) struct Section<'a>(pub(crate) Table<'a>);
+
+impl<'a> Section<'a> {
+    /// The value of a key that must be there.
+    pub(crate) fn required(&self, key: &Key, example: &str) -> Result<Item<'a>, ConfigError> {
+        self.0.required(key.name(), example)
+    }
+
+    fn get(&self, key: &Key) -> Result<Item<'a>, ConfigError> {
+        self.required(key, key.default.unwrap_or("..."))
+    }
+
+    /// A number in the key's range.
+    pub(crate) fn number(&self, key: &Key) -> Result<f32, ConfigError> {
+        self.get(key)?.number(bounds(key))
+    }
+
+    /// A whole number in the key's range.
+    pub(crate) fn whole(&self, key: &Key) -> Result<u32, ConfigError> {
+        let (low, high) = match key.allowed {
+            Allowed::Whole(low, high) => (low, high),
+            _ => (0, u32::MAX),
+        };
+        self.get(key)?.whole(low, high)
+    }
+
+    /// True or false.
+    pub(crate) fn flag(&self, key: &Key) -> Result<bool, ConfigError> {
+        self.get(key)?.flag()
+    }
+
+    /// The index of one of the key's words.
+    pub(crate) fn choice(&self, key: &Key) -> Result<usize, ConfigError> {
+        let words = match key.allowed {
+            Allowed::Choice(words) => words,
+            _ => &[],
+        };
+        self.get(key)?.choice("possible values", words)
+    }
+}
+
+fn bounds(key: &Key) -> Bounds {
+    match key.allowed {
+        Allowed::Number(bounds) => bounds,
+        _ => Bounds::between(-1e6, 1e6),
     }
 }

@@ -9,10 +9,12 @@ use toml::de::{DeTable, DeValue};
 /// A text that values come from.
 #[derive(Debug)]
 pub(crate) enum Source {
-    /// A file, or the built-in defaults.
+    /// A file.
     File { path: PathBuf, text: String },
     /// A command line argument, whole.
     Argument(String),
+    /// The default of the key with this path.
+    Default(&'static str),
 }
 
 /// Where a key or value was written.
@@ -28,8 +30,20 @@ impl Origin {
         let place = match &*self.source {
             Source::File { path, text } => Place::of_span(path, text, &self.span),
             Source::Argument(argument) => Place::Argument(argument.clone()),
+            Source::Default(path) => Place::Argument(format!("the default of {path}")),
         };
         ConfigError::new(place, message, hint)
+    }
+
+    /// Whether nobody wrote this: it is a default.
+    pub(crate) fn is_default(&self) -> bool {
+        matches!(&*self.source, Source::Default(_))
+    }
+
+    fn replace_default(&mut self, other: Self) {
+        if self.is_default() {
+            *self = other;
+        }
     }
 
     /// A complaint about the whole text.
@@ -37,6 +51,7 @@ impl Origin {
         let place = match &*self.source {
             Source::File { path, .. } => Place::File(path.clone()),
             Source::Argument(argument) => Place::Argument(argument.clone()),
+            Source::Default(path) => Place::Argument(format!("the default of {path}")),
         };
         ConfigError::new(place, message, hint)
     }
@@ -75,7 +90,8 @@ impl Node {
         let whole = Origin { source: Arc::clone(&source), span: 0..0 };
         let document = DeTable::parse(text).map_err(|error| {
             let origin = Origin { source: Arc::clone(&source), span: error.span().unwrap_or(0..0) };
-            origin.error(error.message(), "this is not valid TOML here; see https://toml.io for the rules")
+            let message = format!("not valid TOML: {}", error.message());
+            origin.error(message, "text needs quotes, lists need commas; https://toml.io has the rules")
         })?;
         Ok(Self { value: table(document.get_ref(), &source)?, origin: whole })
     }
@@ -96,7 +112,7 @@ impl Node {
         match self.value {
             Value::Text(_) => "a string",
             Value::Integer(_) => "a whole number",
-            Value::Float(_) => "a number",
+            Value::Float(_) => "a decimal number",
             Value::Flag(_) => "true or false",
             Value::List(_) => "a list",
             Value::Table(_) => "a table",
@@ -123,13 +139,29 @@ impl Node {
         Some(entries.remove(at))
     }
 
-    /// Lays `over` on top: tables are merged key by key, anything else is replaced.
+    /// Puts a value under a key of this table, in the place of an old one or last.
+    pub(crate) fn put(&mut self, key: &str, node: Node) {
+        let Value::Table(entries) = &mut self.value else { return };
+        match entries.iter_mut().find(|entry| entry.key == key) {
+            Some(entry) => entry.node = node,
+            None => entries.push(Entry { key: key.to_owned(), origin: node.origin.clone(), node }),
+        }
+    }
+
+    /// Lays `over` on top: tables are merged key by key, anything else is replaced. Shares of start regions are
+    /// replaced as a whole too: they sum to 1.
     pub(crate) fn merge(&mut self, over: Node) {
         match (&mut self.value, over.value) {
             (Value::Table(below), Value::Table(above)) => {
+                // What somebody wrote is a better place for complaints than a default.
+                self.origin.replace_default(over.origin);
                 for entry in above {
                     match below.iter_mut().find(|old| old.key == entry.key) {
-                        Some(old) => old.node.merge(entry.node),
+                        Some(old) if entry.key != "starts" => {
+                            old.origin.replace_default(entry.origin);
+                            old.node.merge(entry.node);
+                        }
+                        Some(old) => *old = entry,
                         None => below.push(entry),
                     }
                 }

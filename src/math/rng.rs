@@ -25,8 +25,12 @@ pub enum Purpose {
     Lesson = 7,
     /// Steps under given actions: `probe` and the planner's demonstrations.
     Given = 8,
+    /// One primitive step of the teacher.
+    Teacher = 9,
+    /// Where a demonstration starts.
+    TeacherStart = 10,
     /// Resampling in statistics; never used by a kernel.
-    Statistics = 9,
+    Statistics = 11,
 }
 
 /// Name and code of every purpose that a shader names.

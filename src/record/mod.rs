@@ -1,1 +1,26 @@
-//! Run folders.
+//! Run folders: what an experiment leaves on disk, and how it survives being killed.
+//!
+//! The experiment writes through [`RunFolder`]; reports read through [`FinishedRun`] and never write here.
+//! Every file is committed whole (temporary file, fsync, rename), and `manifest.json` comes last: a folder that
+//! holds it is complete, and its hashes vouch for every other file.
+
+pub mod atomic;
+mod columns;
+mod error;
+pub mod finished;
+pub mod folder;
+pub mod manifest;
+pub mod places;
+pub mod tables;
+pub mod weights;
+
+pub use error::RecordError;
+pub use finished::FinishedRun;
+pub use folder::{RunFolder, State};
+pub use manifest::{Manifest, Provenance};
+pub use places::PlaceReading;
+pub use tables::{EvaluationRow, Names, TrialRow};
+pub use weights::{NetWeights, SkillWeights};
+
+/// Version of the run folder's layout and of every file in it.
+pub const FORMAT: u32 = 1;

@@ -1,1 +1,83 @@
-//! Reports.
+//! Reports: figures, tables and one HTML page from a complete run folder, and from nothing else.
+//!
+//! The same folder always gives the same bytes. Nothing here reaches back into the simulation.
+
+pub mod axes;
+pub mod canvas;
+pub mod curves;
+pub mod figures;
+pub mod floor;
+pub mod page;
+pub mod raster;
+pub mod resample;
+pub mod statistics;
+pub mod summary;
+
+use crate::config::ConfigError;
+use crate::record::{FinishedRun, RecordError, atomic, folder, places, tables};
+use crate::world::load;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// File name of the page.
+pub const PAGE: &str = "report.html";
+const FIGURES: &str = "figures";
+const PLACES: &str = "places.json";
+
+/// An error in making a report.
+#[derive(Debug, thiserror::Error)]
+pub enum ReportError {
+    /// The run folder cannot be read or written.
+    #[error(transparent)]
+    Record(#[from] RecordError),
+    /// The run folder's floor plan cannot be read: another version of skilltree made the run.
+    #[error("{0}\nThe run was made by another version of skilltree: use that one")]
+    World(#[from] ConfigError),
+    /// A figure could not be turned into PNG.
+    #[error("a figure could not be drawn: {0}. This is a bug in skilltree: please report it")]
+    Drawing(String),
+    /// The page's template failed.
+    #[error("the page could not be written: {0}. This is a bug in skilltree: please report it")]
+    Page(String),
+}
+
+/// Writes `figures/*.svg`, `figures/*.png` and `report.html` into a complete run folder and returns their paths.
+///
+/// # Errors
+/// If the folder is not a complete run, in use, damaged or not writable. Each file is written whole or not at all.
+pub fn write(dir: &Path) -> Result<Vec<PathBuf>, ReportError> {
+    let run = FinishedRun::read(dir)?;
+    let _lock = folder::lock(dir)?;
+    let world = load::parse(run.world(), &dir.join(folder::WORLD))?;
+    let (names, rows) = match run.path(tables::EVALUATIONS) {
+        Some(path) => tables::read_evaluations(&path)?,
+        None => Default::default(),
+    };
+    let readings = match run.path(PLACES) {
+        Some(path) => {
+            let bytes = fs::read(&path).map_err(RecordError::unreadable(&path))?;
+            places::read_places(&bytes, &path)?
+        }
+        None => Vec::new(),
+    };
+    let summary = summary::summarise(&names, &rows, &run.manifest().provenance.seeds);
+    let mut drawings = figures::learning(&summary);
+    drawings.extend(figures::floor(&world, &readings));
+    let page = page::render(&run, &summary, &drawings)?;
+
+    let folder = dir.join(FIGURES);
+    fs::create_dir_all(&folder).map_err(|source| RecordError::NotCommitted { path: folder.clone(), source })?;
+    let mut written = Vec::new();
+    for figure in &drawings {
+        for (ending, bytes) in [("svg", figure.svg.clone().into_bytes()), ("png", raster::png(&figure.svg)?)] {
+            let path = folder.join(format!("{}.{ending}", figure.name));
+            atomic::place(&path, &bytes)?;
+            written.push(path);
+        }
+    }
+    atomic::sync_folder(&folder)?;
+    let path = dir.join(PAGE);
+    atomic::write(&path, page.as_bytes())?;
+    written.push(path);
+    Ok(written)
+}

@@ -90,8 +90,8 @@ fn segment(segment: &Segment) -> layout::Segment {
     layout::Segment {
         ax: segment.a.x,
         ay: segment.a.y,
-        dx: along.x as f32,
-        dy: along.y as f32,
+        bx: segment.b.x,
+        by: segment.b.y,
         tx: unit.x as f32,
         ty: unit.y as f32,
         length: along.length() as f32,

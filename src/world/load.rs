@@ -1,9 +1,11 @@
 //! A world file's text -> a checked [`World`]. All lengths are inches, all angles degrees.
 
 use super::check::{self, Written};
-use super::{Charger, Door, Light, Pose, Rect, Room, Segment, World};
+use super::solids::{self, holds};
+use super::{Charger, Door, Light, Pose, Rect, Room, World};
 use crate::config::ConfigError;
-use crate::config::read::{Bounds, Item, Table};
+use crate::config::keys::Bounds;
+use crate::config::read::{Item, Table};
 use crate::config::tree::Node;
 use crate::learner::layout::{MAX_DOORS, MAX_ROOMS, MAX_SEGMENTS};
 use glam::Vec2;
@@ -31,7 +33,10 @@ pub fn load(path: &Path) -> Result<(World, String), ConfigError> {
 pub fn parse(text: &str, source: &Path) -> Result<World, ConfigError> {
     let document = Node::parse(text, source)?;
     let root = Item::root(&document).table()?;
-    let name = source.file_stem().map_or_else(|| "world".to_owned(), |stem| stem.to_string_lossy().into_owned());
+    let name = match root.optional("name") {
+        Some(item) => item.short_name()?.to_owned(),
+        None => source.file_stem().map_or_else(|| "world".to_owned(), |stem| stem.to_string_lossy().into_owned()),
+    };
     let size = size(&root)?;
     let floor = Rect { min: Vec2::ZERO, max: size };
 
@@ -46,7 +51,7 @@ pub fn parse(text: &str, source: &Path) -> Result<World, ConfigError> {
     let regions = regions(&root, &floor)?;
     root.finish()?;
 
-    let segments = segments(&floor, &walls, &boxes, charger.as_ref());
+    let segments = solids::segments(&floor, &walls, &boxes, charger.as_ref());
     if segments.len() > MAX_SEGMENTS {
         let message = format!("the world has {} segments, more than {MAX_SEGMENTS}", segments.len());
         let hint = "a box counts 4, less its sides against the outer walls; use fewer or larger boxes";
@@ -59,11 +64,7 @@ pub fn parse(text: &str, source: &Path) -> Result<World, ConfigError> {
 
 fn size(root: &Table<'_>) -> Result<Vec2, ConfigError> {
     let item = root.required("size", "[360, 420]")?;
-    let [x, y] = item.numbers::<2>("[width, height] in inches")?;
-    for side in item.items()? {
-        side.number(SIDES)?;
-    }
-    Ok(Vec2::new(x, y))
+    item.numbers_within("[width, height] in inches", SIDES).map(Vec2::from_array)
 }
 
 /// A list that may be missing, with at most `most` items.
@@ -81,10 +82,6 @@ fn listed<'a>(root: &Table<'a>, key: &str, most: usize) -> Result<Vec<Item<'a>>,
 fn outside(item: &Item<'_>, floor: &Rect) -> ConfigError {
     let hint = format!("the floor reaches from 0, 0 to {}, {} inches", floor.max.x, floor.max.y);
     item.error(format!("`{}` lies outside the floor", item.name), hint)
-}
-
-fn holds(floor: &Rect, point: Vec2) -> bool {
-    point.cmpge(floor.min).all() && point.cmple(floor.max).all()
 }
 
 /// A rectangle x1, y1, x2, y2 inside the floor.
@@ -224,33 +221,4 @@ fn regions(root: &Table<'_>, floor: &Rect) -> Result<Vec<(String, Rect)>, Config
         table.finish()?;
     }
     Ok(regions)
-}
-
-/// Everything solid, without the sides of boxes that nothing can touch or see.
-fn segments(floor: &Rect, walls: &[(Vec2, Vec2)], boxes: &[Rect], charger: Option<&Charger>) -> Vec<Segment> {
-    let outer = sides(floor).map(|(a, b)| Segment { a, b, charger: false });
-    let walls = walls.iter().map(|&(a, b)| Segment { a, b, charger: false });
-    let boxed = boxes.iter().flat_map(sides).map(|(a, b)| Segment { a, b, charger: false });
-    let charger = charger.iter().flat_map(|c| sides(&c.area)).map(|(a, b)| Segment { a, b, charger: true });
-    let seen = |segment: &Segment| !hidden(segment, floor, boxes);
-    outer.into_iter().chain(walls).chain(boxed.filter(seen)).chain(charger.filter(seen)).collect()
-}
-
-/// The sides of a rectangle, counter-clockwise: its inside is on their left.
-fn sides(rect: &Rect) -> [(Vec2, Vec2); 4] {
-    let corner = [rect.min, Vec2::new(rect.max.x, rect.min.y), rect.max, Vec2::new(rect.min.x, rect.max.y)];
-    [0, 1, 2, 3].map(|i| (corner[i], corner[(i + 1) % 4]))
-}
-
-/// Whether a side of a box has the outside of the floor, or the inside of a single other box, all along its outer face.
-fn hidden(side: &Segment, floor: &Rect, boxes: &[Rect]) -> bool {
-    // Outward of a counter-clockwise side, far less than any real distance between two edges.
-    let outward = (side.b - side.a).perp().normalize() * -0.01;
-    let (a, b) = (side.a + outward, side.b + outward);
-    let closed = |rect: &Rect| holds(rect, side.a) && holds(rect, side.b);
-    let covers = |rect: &Rect| {
-        let inside = |p: Vec2| p.cmpge(rect.min - 0.005).all() && p.cmple(rect.max + 0.005).all();
-        closed(rect) && inside(a) && inside(b)
-    };
-    !(holds(floor, a) && holds(floor, b)) || boxes.iter().any(covers)
 }

@@ -7,6 +7,7 @@ mod check;
 pub mod geometry;
 pub mod load;
 pub mod regions;
+mod solids;
 
 pub use atlas::Atlas;
 pub use load::{load, parse};
@@ -103,7 +104,7 @@ pub struct Segment {
 /// A checked floor plan.
 #[derive(Debug, Clone, PartialEq)]
 pub struct World {
-    /// The file's stem.
+    /// The name that the file gives, or else the file's stem.
     pub name: String,
     /// Outer size in inches.
     pub size: Vec2,

@@ -37,17 +37,26 @@ impl World {
     /// Cells of a region, packed `ix | iy << 16` in units of [`CELL`], row by row from the bottom; none for an
     /// unknown name. A robot centred anywhere in a cell is free, and the cell's centre is in the region.
     pub fn region_cells(&self, name: &str) -> Option<Vec<u32>> {
+        self.cells(name).map(Iterator::collect)
+    }
+
+    /// Whether a region has no cell, which is found out sooner than all its cells; none for an unknown name.
+    pub fn region_is_empty(&self, name: &str) -> Option<bool> {
+        self.cells(name).map(|mut cells| cells.next().is_none())
+    }
+
+    fn cells(&self, name: &str) -> Option<impl Iterator<Item = u32>> {
         if !self.region_names().iter().any(|known| known == name) {
             return None;
         }
         let [columns, rows] = (self.size / CELL).floor().to_array().map(|n| n as u32);
-        let cells = (0..rows).flat_map(|iy| (0..columns).map(move |ix| (ix, iy)));
-        let chosen = cells.filter(|&(ix, iy)| {
+        let cells = (0..rows).flat_map(move |iy| (0..columns).map(move |ix| (ix, iy)));
+        let chosen = cells.filter(move |&(ix, iy)| {
             let centre = cell_centre(ix, iy);
             // The region first: it is cheaper than the clearance.
             self.in_region(name, centre) && self.clearance(centre) >= ROBOT_RADIUS + CELL / 2.0 * SQRT_2
         });
-        Some(chosen.map(|(ix, iy)| ix | iy << 16).collect())
+        Some(chosen.map(|(ix, iy)| ix | iy << 16))
     }
 
     fn in_region(&self, name: &str, point: Vec2) -> bool {

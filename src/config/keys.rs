@@ -1,0 +1,207 @@
+//! Every key of a config file: what it means, what it may be, and what it is if nobody sets it.
+//!
+//! This is the one place for defaults and ranges; the reader and the resolved config both use it.
+
+use std::fmt;
+
+/// What a number may be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bounds {
+    low: f64,
+    high: f64,
+    open_low: bool,
+    open_high: bool,
+}
+
+impl Bounds {
+    /// From `low` to `high`, both allowed.
+    pub const fn between(low: f64, high: f64) -> Self {
+        Self { low, high, open_low: false, open_high: false }
+    }
+
+    /// More than `low`, at most `high`.
+    pub const fn above(low: f64, high: f64) -> Self {
+        Self { low, high, open_low: true, open_high: false }
+    }
+
+    /// At least `low`, less than `high`.
+    pub const fn below(low: f64, high: f64) -> Self {
+        Self { low, high, open_low: false, open_high: true }
+    }
+
+    /// More than `low`, less than `high`.
+    pub const fn inside(low: f64, high: f64) -> Self {
+        Self { low, high, open_low: true, open_high: true }
+    }
+
+    /// Whether the value is allowed, also once it is rounded to f32.
+    pub fn holds(self, value: f64) -> bool {
+        let one = |value: f64| {
+            let low = if self.open_low { value > self.low } else { value >= self.low };
+            let high = if self.open_high { value < self.high } else { value <= self.high };
+            low && high
+        };
+        // An allowed end may lie just outside once rounded; a forbidden one must not be rounded to.
+        let rounded = f64::from(value as f32);
+        let forbidden = (self.open_low && rounded <= self.low) || (self.open_high && rounded >= self.high);
+        one(value) && !forbidden
+    }
+}
+
+impl fmt::Display for Bounds {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { low, high, open_low, open_high } = self;
+        match (open_low, open_high) {
+            (false, false) => write!(f, "between {low} and {high}"),
+            (true, false) => write!(f, "more than {low} and at most {high}"),
+            (false, true) => write!(f, "at least {low} and less than {high}"),
+            (true, true) => write!(f, "more than {low} and less than {high}"),
+        }
+    }
+}
+
+/// What a key's value may be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Allowed {
+    /// A number.
+    Number(Bounds),
+    /// A whole number, both ends allowed.
+    Whole(u32, u32),
+    /// True or false.
+    Flag,
+    /// One of these words.
+    Choice(&'static [&'static str]),
+    /// Anything else, in words.
+    Other(&'static str),
+}
+
+impl fmt::Display for Allowed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(bounds) => write!(f, "a number {bounds}"),
+            Self::Whole(low, high) => write!(f, "a whole number between {low} and {high}"),
+            Self::Flag => f.write_str("true or false"),
+            Self::Choice(words) => f.write_str(&words.join(" or ")),
+            Self::Other(words) => f.write_str(words),
+        }
+    }
+}
+
+/// Where a default comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Basis {
+    /// Stated by the paper.
+    Paper,
+    /// Our choice.
+    Ours,
+}
+
+/// One key of a config file.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Key {
+    /// Dotted path; `*` stands for the name of a skill.
+    pub path: &'static str,
+    /// Default as TOML; none if the key is required, or may be left out for the reason that `meaning` gives.
+    pub default: Option<&'static str>,
+    /// What it may be.
+    pub allowed: Allowed,
+    /// Where the default comes from.
+    pub basis: Basis,
+    /// What it means, with its unit.
+    pub meaning: &'static str,
+}
+
+impl Key {
+    /// The last part of the path.
+    pub fn name(&self) -> &'static str {
+        self.path.rsplit('.').next().unwrap_or(self.path)
+    }
+}
+
+macro_rules! keys {
+    ($($name:ident = $path:literal, $default:expr, $allowed:expr, $basis:ident, $meaning:literal;)*) => {
+        $(
+            #[doc = concat!("`", $path, "`: ", $meaning, ".")]
+            pub const $name: Key = Key {
+                path: $path, default: $default, allowed: $allowed, basis: Basis::$basis, meaning: $meaning,
+            };
+        )*
+        /// All keys, in the order in which files show them.
+        pub const ALL: &[Key] = &[$($name),*];
+    };
+}
+
+use Allowed::{Choice, Flag, Number, Other, Whole};
+
+/// Most trials of a skill and most lessons in a bank: keeps a learner's tables small.
+pub(crate) const MANY: u32 = 100_000;
+const SHARE: Allowed = Number(Bounds::between(0.0, 1.0));
+const RELATIVE: Allowed = Number(Bounds::between(0.0, 0.5));
+const DECAY: Allowed = Number(Bounds::below(0.0, 1.0));
+const HEAT: Allowed = Number(Bounds::between(0.0, 10_000.0));
+
+keys! {
+    NAME = "name", None, Other("letters, digits, - and _"), Ours, "names the run folder; the file's stem if left out";
+    TITLE = "title", Some("''"), Other("text"), Ours, "one line that says what the experiment is for";
+    WORLD = "world", None, Other("a path"), Ours, "the world file, relative to the config file; required";
+    SEED = "seed", Some("1993"), Whole(0, u32::MAX), Ours, "key of what all learners share: the teacher's bank and the planner's trials";
+    SEEDS = "seeds", Some("'0..7'"), Other("ranges such as '0..7', '0..=6', '5' or '1,2,5..9', or a list of whole numbers"), Paper, "one learner per arm and seed; the paper has 7 runs";
+    ARMS = "arms", None, Other("a list of arms"), Ours, "the arms that are run; all if left out";
+
+    EVALUATE_AT = "evaluate.at", Some("[0, 25, 50, 75, 100, 150, 200, 250, 300]"), Other("ascending whole numbers"), Ours, "trials of a skill after which it is tested; it always is after its last one";
+    EVALUATE_EPISODES = "evaluate.episodes", Some("100"), Whole(1, 10_000), Ours, "greedy test trials each time";
+    TEACHER_BANK = "teacher.bank", Some("256"), Whole(1, MANY), Ours, "lessons in the bank of each skill; learners draw theirs from it";
+    TEACHER_DISCOUNT = "teacher.discount", Some("0.95"), Number(Bounds::inside(0.0, 1.0)), Ours, "discount factor of the planner, its own, so that arms that differ in theirs share a teacher";
+    TEACHER_BACKWARD_COST = "teacher.backward_cost", Some("5.0"), Number(Bounds::between(0.0, 1000.0)), Ours, "what the demonstrator puts on backing up, in units of reward, so that it drives as a person would";
+    TEACHER_EPISODES = "teacher.episodes", Some("1000"), Whole(1, MANY), Ours, "test trials of the planner itself";
+
+    NOISE_KIND = "robot.noise.kind", Some("'gaussian'"), Choice(&["gaussian", "uniform"]), Ours, "amounts are standard deviations, or half-widths";
+    NOISE_ACTUATOR = "robot.noise.actuator", Some("0.08"), RELATIVE, Paper, "share of each turn and travel";
+    NOISE_SONAR = "robot.noise.sonar", Some("0.10"), RELATIVE, Paper, "share of each sonar range";
+    NOISE_LIGHT = "robot.noise.light", Some("0.10"), RELATIVE, Paper, "share of each light intensity, before the threshold";
+    NOISE_COMPASS = "robot.noise.compass", Some("2.865"), Number(Bounds::between(0.0, 180.0)), Ours, "degrees on the compass; 0.05 rad";
+
+    HIDDEN = "learning.hidden", Some("32"), Whole(1, 32), Ours, "hidden units of each net; one net per child";
+    INIT = "learning.init", Some("0.5"), Number(Bounds::above(0.0, 10.0)), Ours, "initial weights are uniform in plus or minus this";
+    GAMMA = "learning.gamma", Some("0.9"), SHARE, Ours, "discount factor";
+    LAMBDA = "learning.lambda", Some("0.95"), SHARE, Ours, "0 learns from the next value alone, 1 from the observed return";
+    OPTIMISER = "learning.optimiser", Some("'adam'"), Choice(&["adam", "sgd"]), Ours, "weight update rule";
+    RATE = "learning.rate", Some("0.0015"), Number(Bounds::above(0.0, 10.0)), Ours, "learning rate; the default is for adam, sgd has none";
+    MOMENTUM = "learning.momentum", Some("0.0"), DECAY, Ours, "momentum of sgd, 0 for none";
+    BETA1 = "learning.beta1", Some("0.9"), DECAY, Ours, "decay of adam's mean gradient";
+    BETA2 = "learning.beta2", Some("0.999"), DECAY, Ours, "decay of adam's mean squared gradient";
+    EPSILON = "learning.epsilon", Some("1e-8"), Number(Bounds::between(1e-12, 1.0)), Ours, "added to the root of adam's mean squared gradient";
+    REWARD_SCALE = "learning.reward_scale", Some("100.0"), Number(Bounds::between(1e-3, 1e6)), Ours, "a reward of this size is learned as Q = 1";
+    TARGET_LIMIT = "learning.target_limit", Some("0.99"), Number(Bounds::inside(0.0, 1.0)), Ours, "targets are clipped to plus or minus this, inside the net's output range";
+    HEAT_START = "learning.inverse_temperature_start", Some("20.0"), HEAT, Ours, "1/T of action choice at the first trial, per Q / reward_scale";
+    HEAT_END = "learning.inverse_temperature_end", Some("120.0"), HEAT, Ours, "1/T at the end of the schedule";
+    HEAT_TRIALS = "learning.inverse_temperature_trials", Some("150"), Whole(0, MANY), Ours, "trials over which 1/T rises linearly";
+    POLICY_THRESHOLD = "learning.policy_threshold", Some("0.05"), DECAY, Ours, "a replayed step is learned only if its action's current probability exceeds this";
+    REPLAYS = "learning.replays", Some("60"), Whole(0, 10_000), Ours, "lessons replayed after each trial";
+    MEMORY = "learning.memory", Some("300"), Whole(1, 10_000), Ours, "latest lessons that are kept";
+    MEAN_AGE = "learning.mean_age", Some("100.0"), Number(Bounds::between(0.1, 1e6)), Ours, "mean age, in lessons, of the replayed ones";
+    TAUGHT_PASSES = "learning.taught_passes", Some("20"), Whole(0, 1000), Ours, "passes over each taught lesson before the first trial";
+    TAUGHT_REPLAYS = "learning.taught_replays", Some("3"), Whole(0, 1000), Ours, "taught lessons replayed after each trial";
+    TAUGHT_ALWAYS = "learning.taught_always", Some("true"), Flag, Ours, "taught steps are learned whatever their action's probability";
+    TIMEOUT_TERMINAL = "learning.timeout_terminal", Some("true"), Flag, Ours, "a trial cut at the step limit ends with value 0 (true), or with its last observation's value (false)";
+    MASK_BLOCKED = "learning.mask_blocked", Some("true"), Flag, Ours, "an action that was just blocked is not available on the next step";
+
+    SKILL_INPUTS = "skill.*.inputs", None, Other("a list of sonar, sonar(SCALE), sonar-far, light, bumpers, compass"), Ours, "what the nets see, in order; required. sonar is sonar(60), with the decay in inches";
+    SKILL_CHILDREN = "skill.*.children", Some("['turn+15', 'turn-15', 'turn+60', 'turn-60', 'move+12', 'move-12']"), Other("a list of actions"), Paper, "what the skill chooses among; degrees counter-clockwise, inches forward";
+    SKILL_REWARD = "skill.*.reward", None, Other("{ event = amount } for docked, collision, passed-door"), Ours, "paid for events; 0 for those left out; required";
+    SKILL_STARTS = "skill.*.starts", Some("'anywhere'"), Other("a region, or { region = share } with shares that sum to 1"), Paper, "where training trials start";
+    SKILL_TESTS = "skill.*.tests", Some("'anywhere'"), Other("a region"), Ours, "where test trials start";
+    SKILL_ENDS = "skill.*.ends", Some("[]"), Other("a list of events"), Ours, "events that end a trial as achieved";
+    SKILL_MAX_STEPS = "skill.*.max_steps", Some("30"), Whole(1, 255), Paper, "primitive steps after which a trial is cut; 30 is the paper's for docking";
+    SKILL_LESSONS = "skill.*.lessons", Some("0"), Whole(0, 10_000), Ours, "taught lessons before the first trial";
+    SKILL_TRIALS = "skill.*.trials", Some("300"), Whole(1, MANY), Paper, "training trials; 300 is the paper's for docking";
+}
+
+/// Amount paid for an event.
+pub const AMOUNT: Bounds = Bounds::between(-1e6, 1e6);
+/// Share of trials that start in a region.
+pub const START_SHARE: Bounds = Bounds::above(0.0, 1.0);
+/// Decay of the near sonar coding, inches.
+pub const SONAR_SCALE: Bounds = Bounds::between(1.0, 1000.0);
+/// Decay of `sonar` without a number, inches. Ours.
+pub const SONAR_DEFAULT: f32 = 60.0;

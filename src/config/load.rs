@@ -1,0 +1,147 @@
+//! From a config file and what the command line adds to a [`Plan`].
+//!
+//! Four layers, each over the one before: defaults, the file, `--set`, and an arm's own table (into which
+//! `--set arm.NAME.key=value` goes first). Within a skill, `skill.NAME.learning` lies over `learning`, also over an
+//! arm's: what names the skill is more specific.
+
+use super::arms::Arms;
+use super::error::ConfigError;
+use super::keys::{self, Key};
+use super::plan::{Evaluate, Plan, Teacher};
+use super::read::{Item, Section, Table};
+use super::tree::{Node, Origin, Source, Value};
+use super::{seeds, set, write};
+use crate::world::{self, World};
+use std::path::Path;
+use std::sync::Arc;
+
+/// What the command line changes in a config.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Overrides {
+    /// `key=value` of each `--set`, in order: `learning.rate=0.01`, `skill.dock.trials=20`,
+    /// `arm.taught-sgd.learning.rate=0.1`. A later one wins. One on a base key wins over the file's base key, but an
+    /// arm's own override of that key, being more specific, still holds in that arm.
+    pub set: Vec<String>,
+    /// The value of `--seeds`, which wins over the file and over `--set`.
+    pub seeds: Option<String>,
+}
+
+/// Reads a config file, the world file that it names, and the command line's changes.
+pub fn load(path: &Path, overrides: &Overrides) -> Result<Plan, ConfigError> {
+    let text = std::fs::read_to_string(path).map_err(|error| ConfigError::unreadable(path, "config file", &error))?;
+    let mut tree = Node::parse(&text, path)?;
+    for argument in &overrides.set {
+        set::apply(&mut tree, argument)?;
+    }
+    if let Some(text) = &overrides.seeds {
+        let source = Arc::new(Source::Argument(seeds::argument(text)));
+        tree.put("seeds", Node { value: Value::Text(text.clone()), origin: Origin { source, span: 0..0 } });
+    }
+    let own = tree.remove("arm").map(|entry| entry.node);
+    let mut base = defaults(&tree)?;
+    base.merge(tree);
+
+    let root = Item::root(&base).table()?;
+    let name = match root.optional(keys::NAME.name()) {
+        Some(item) => item.short_name()?.to_owned(),
+        None => path.file_stem().map_or_else(|| "config".to_owned(), |stem| stem.to_string_lossy().into_owned()),
+    };
+    let (world, world_text) = world(&root.required(keys::WORLD.name(), "\"worlds/office.toml\"")?, path)?;
+    let teacher = teacher(&root)?;
+    let evaluate = evaluate(&root)?;
+    let arms = Arms { base: &base, own: own.as_ref(), world: &world, bank: teacher.bank }.read(&root)?;
+    let section = Section(root);
+    let title = section.required(&keys::TITLE, "\"...\"")?.text()?.to_owned();
+    let run_seed = section.whole(&keys::SEED)?;
+    let seeds = seeds::read(&section.required(&keys::SEEDS, "\"0..7\"")?)?;
+    section.0.finish()?;
+
+    let resolved = resolve(base, &name, own);
+    let source = path.to_owned();
+    Ok(Plan { name, source, title, run_seed, seeds, world, world_text, arms, evaluate, teacher, resolved })
+}
+
+/// The tree of all defaults, with one table for each skill of the file, in its order.
+fn defaults(tree: &Node) -> Result<Node, ConfigError> {
+    let source = Arc::new(Source::Default("the whole config"));
+    let mut out = Node::empty(Origin { source, span: 0..0 });
+    let skills = set::names(tree, "skill");
+    for key in keys::ALL {
+        let Some(text) = key.default else { continue };
+        let parts: Vec<&str> = key.path.split('.').collect();
+        match parts.as_slice() {
+            ["skill", _, last] => {
+                for name in &skills {
+                    out.merge(default(key, text, &["skill", name, last])?);
+                }
+            }
+            path => out.merge(default(key, text, path)?),
+        }
+    }
+    Ok(out)
+}
+
+fn default(key: &Key, text: &str, path: &[&str]) -> Result<Node, ConfigError> {
+    let source = Arc::new(Source::Default(key.path));
+    let origin = Origin { source: Arc::clone(&source), span: 0..0 };
+    // A test reads every default; a broken one is still reported and not a panic.
+    let broken = || Err(origin.error(format!("`{text}` is not TOML"), "please report this"));
+    let mut node = Node::parse_value(text, &source).unwrap_or_else(broken)?;
+    for part in path.iter().rev() {
+        let mut table = Node::empty(origin.clone());
+        table.put(part, node);
+        node = table;
+    }
+    Ok(node)
+}
+
+fn world(item: &Item<'_>, config: &Path) -> Result<(World, String), ConfigError> {
+    let path = config.parent().unwrap_or(Path::new("")).join(item.text()?);
+    let text = std::fs::read_to_string(&path).map_err(|error| {
+        let error = ConfigError::unreadable(&path, "world file", &error);
+        let hint = format!("it was looked for at {}; the path starts from the config file's folder", path.display());
+        item.error(error.message(), hint)
+    })?;
+    Ok((world::parse(&text, &path)?, text))
+}
+
+fn teacher(root: &Table<'_>) -> Result<Teacher, ConfigError> {
+    let section = Section(root.required("teacher", "{}")?.table()?);
+    let teacher = Teacher {
+        bank: section.whole(&keys::TEACHER_BANK)?,
+        discount: section.number(&keys::TEACHER_DISCOUNT)?,
+        backward_cost: section.number(&keys::TEACHER_BACKWARD_COST)?,
+        episodes: section.whole(&keys::TEACHER_EPISODES)?,
+    };
+    section.0.finish()?;
+    Ok(teacher)
+}
+
+fn evaluate(root: &Table<'_>) -> Result<Evaluate, ConfigError> {
+    let section = Section(root.required("evaluate", "{}")?.table()?);
+    let mut at = Vec::new();
+    for item in section.required(&keys::EVALUATE_AT, "[0, 100]")?.items()? {
+        let trials = item.whole(0, keys::MANY)?;
+        if at.last().is_some_and(|&last| last >= trials) {
+            return Err(
+                item.error(format!("`{}` does not rise", item.name), "write each number once, in ascending order")
+            );
+        }
+        at.push(trials);
+    }
+    let evaluate = Evaluate { at, episodes: section.whole(&keys::EVALUATE_EPISODES)? };
+    section.0.finish()?;
+    Ok(evaluate)
+}
+
+/// The text that gives this plan again from a run folder, where the world lies beside it as `world.toml`.
+fn resolve(mut base: Node, name: &str, arms: Option<Node>) -> String {
+    let origin = base.origin.clone();
+    let text = |text: &str| Node { value: Value::Text(text.to_owned()), origin: origin.clone() };
+    base.put(keys::NAME.name(), text(name));
+    base.put(keys::WORLD.name(), text("world.toml"));
+    if let Some(arms) = arms {
+        base.put("arm", arms);
+    }
+    format!("# Resolved by skilltree: defaults, config file and command line together.\n{}", write::document(&base))
+}

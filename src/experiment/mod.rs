@@ -1,0 +1,8 @@
+//! Arms x seeds -> cohorts -> results.
+//!
+//! Learners are independent, so how they are grouped, in which order they train, and how often the run is
+//! interrupted changes no byte of any result.
+
+pub mod group;
+pub mod result;
+pub mod train;

@@ -1,0 +1,102 @@
+//! Trains one cohort: to each test point in turn, and tests there.
+
+use super::group::{Group, LearnerId};
+use super::result::{LearnerResult, RoomSums, TestResult};
+use crate::backend::{Backend, BackendError, Stop, Test};
+use crate::config::plan::Plan;
+use crate::evaluate::STATE_ACHIEVED;
+use crate::learner::layout::{Cursor, Episode, PHASE_FAILED, ROW_WORDS};
+use glam::Vec2;
+
+/// Told how far a cohort is: trials finished by all its learners together.
+pub type Progress<'a> = &'a mut dyn FnMut(u64);
+
+/// Trains and tests the learners, and hands back all that they leave.
+///
+/// # Errors
+/// Where the backend fails.
+pub fn train(
+    plan: &Plan,
+    group: &Group,
+    learners: &[LearnerId],
+    backend: &mut dyn Backend,
+    progress: Progress<'_>,
+) -> Result<Vec<LearnerResult>, BackendError> {
+    let mut results: Vec<LearnerResult> = learners.iter().map(|id| LearnerResult::new(*id)).collect();
+    backend.load(group.cohort(plan, learners))?;
+    for skill in 0..group.shape.skills.len() {
+        for point in test_points(plan, group, skill) {
+            let stop = Stop { skill: skill as u32, trial: point };
+            let cursors = loop {
+                let cursors = backend.advance(stop)?;
+                progress(learners.iter().zip(cursors).map(|(id, cursor)| trials_of(plan, *id, cursor)).sum());
+                if cursors.iter().all(|cursor| stop.holds(cursor)) {
+                    break cursors.to_vec();
+                }
+            };
+            let wanted = |id: &LearnerId| tested_at(plan, *id, skill, point);
+            if plan.evaluate.episodes == 0 || !learners.iter().any(wanted) {
+                continue;
+            }
+            let test = Test { skill: skill as u32, number: point, episodes: plan.evaluate.episodes };
+            let episodes = backend.evaluate(test)?;
+            for (index, id) in learners.iter().enumerate().filter(|(_, id)| wanted(id)) {
+                let count = plan.evaluate.episodes as usize;
+                let own = &episodes[index * count..(index + 1) * count];
+                let actions = cursors[index].actions;
+                let rooms = sums(plan, own);
+                results[index].tests.push(TestResult { skill: skill as u32, trials: point, actions, rooms });
+                debug_assert_eq!(results[index].id, *id);
+            }
+        }
+    }
+    // The last trial of the last skill is behind every learner: let them close.
+    let done = Stop { skill: u32::MAX, trial: u32::MAX };
+    while !backend.advance(done)?.iter().all(|cursor| done.holds(cursor)) {}
+    let cohort = backend.memory()?;
+    for (index, result) in results.iter_mut().enumerate() {
+        let cursor = &cohort.cursors[index];
+        let rows = &cohort.rows[index * cohort.rows_stride..][..cursor.rows as usize * ROW_WORDS];
+        result.rows = rows.to_vec();
+        result.nets = cohort.nets[index * cohort.nets_stride..][..cohort.nets_stride].to_vec();
+        result.failed = cursor.phase == PHASE_FAILED;
+        result.updates = cursor.updates;
+    }
+    Ok(results)
+}
+
+/// Numbers of trials after which some learner of the group is tested in a skill, ascending.
+fn test_points(plan: &Plan, group: &Group, skill: usize) -> Vec<u32> {
+    let mut points = Vec::new();
+    for arm in &group.arms {
+        let trials = plan.arms[*arm].skills[skill].trials;
+        points.extend(plan.evaluate.at.iter().copied().filter(|point| *point <= trials));
+        points.push(trials);
+    }
+    points.sort_unstable();
+    points.dedup();
+    points
+}
+
+fn tested_at(plan: &Plan, id: LearnerId, skill: usize, point: u32) -> bool {
+    let trials = plan.arms[id.arm].skills[skill].trials;
+    point == trials || (point < trials && plan.evaluate.at.contains(&point))
+}
+
+/// Trials that a learner has finished, over all skills.
+fn trials_of(plan: &Plan, id: LearnerId, cursor: &Cursor) -> u64 {
+    let skills = &plan.arms[id.arm].skills;
+    let before: u32 = skills.iter().take(cursor.skill as usize).map(|skill| skill.trials).sum();
+    u64::from(before + cursor.trial)
+}
+
+/// Sums of a learner's test trials by the room in which they began; one entry per room of the world.
+pub fn sums(plan: &Plan, episodes: &[Episode]) -> Vec<RoomSums> {
+    let mut rooms = vec![RoomSums::default(); plan.world.rooms.len() + 1];
+    for episode in episodes {
+        let start = Vec2::new(episode.start_x, episode.start_y);
+        let room = plan.world.room_of(start).unwrap_or(plan.world.rooms.len());
+        rooms[room].add(episode.step, episode.state == STATE_ACHIEVED, f64::from(episode.reward), episode.collisions);
+    }
+    rooms
+}

@@ -1,0 +1,205 @@
+//! From a plan to the memory of a cohort: every derived size is computed here, once.
+
+use super::layout::{
+    Cursor, EVENTS, LANES, LESSON_HEADER, MAX_CHILDREN, MAX_GROUPS, MAX_INPUTS, MAX_STARTS, RECORD_WORDS, ROW_WORDS,
+    SONAR_CODES, Settings, SkillPlan,
+};
+use crate::config::plan::{Arm, Input, Noise, NoiseKind, Optimiser, Skill};
+use crate::qnet::init::init;
+use crate::skill::observe::{GROUP_BUMPERS, GROUP_COMPASS, GROUP_LIGHT, GROUP_SONAR};
+use crate::world::World;
+use crate::world::atlas::Atlas;
+use bytemuck::Zeroable;
+
+/// Sizes and shared words of the learners of some arms that agree in everything but numbers.
+#[derive(Debug, Clone)]
+pub struct Shape {
+    /// One per skill; the bank's offsets are still to be filled in.
+    pub skills: Vec<SkillPlan>,
+    /// Segment lists, region cells and sonar tables.
+    pub atlas: Atlas,
+    /// Words of one learner's nets.
+    pub nets_stride: usize,
+    /// Words of one learner's lessons.
+    pub lessons_stride: usize,
+    /// Words of one learner's rows.
+    pub rows_stride: usize,
+}
+
+/// Why a plan cannot be laid out: a limit of the layout or a region without free space.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("skill `{skill}`: {message}\nhint: {hint}")]
+pub struct ShapeError {
+    /// The skill's name.
+    pub skill: String,
+    /// What does not fit.
+    pub message: String,
+    /// What the user can do.
+    pub hint: String,
+}
+
+impl Shape {
+    /// Lays out the memory of `arms`, which must have equal skills but for their numbers.
+    ///
+    /// # Errors
+    /// Where a skill exceeds a limit of the layout, or starts in a region without free space.
+    pub fn new(world: &World, arms: &[&Arm]) -> Result<Self, ShapeError> {
+        let mut shape =
+            Self { skills: Vec::new(), atlas: Atlas::new(world), nets_stride: 0, lessons_stride: 0, rows_stride: 0 };
+        for (number, skill) in arms[0].skills.iter().enumerate() {
+            let siblings = || arms.iter().map(|arm| &arm.skills[number]);
+            let most = |size: fn(&Skill) -> u32| siblings().map(size).max().unwrap_or(0);
+            let mut plan = plan_of(skill, world, &mut shape.atlas)?;
+            plan.nets_offset = shape.nets_stride as u32;
+            plan.clock_offset = plan.nets_offset + plan.children * 3 * plan.rows * LANES as u32;
+            plan.lesson_stride = lesson_stride(most(|skill| skill.max_steps));
+            plan.memory_offset = shape.lessons_stride as u32;
+            shape.nets_stride = plan.clock_offset as usize + LANES;
+            shape.lessons_stride += most(|skill| skill.learning.memory) as usize * plan.lesson_stride as usize;
+            shape.rows_stride += most(|skill| skill.trials + skill.lessons) as usize * ROW_WORDS;
+            shape.skills.push(plan);
+        }
+        // No buffer may be empty, even where nothing is trained.
+        shape.lessons_stride = shape.lessons_stride.max(1);
+        shape.rows_stride = shape.rows_stride.max(ROW_WORDS);
+        Ok(shape)
+    }
+
+    /// Bytes of memory that one learner takes.
+    pub fn bytes_per_learner(&self) -> usize {
+        let words = self.nets_stride + self.lessons_stride + self.rows_stride;
+        words * 4 + size_of::<Cursor>() + self.skills.len() * size_of::<Settings>()
+    }
+
+    /// A learner's settings for each skill, its cursor before the first quantum, and its initial nets.
+    pub fn learner(&self, arm: &Arm, run_seed: u32, seed: u32) -> (Vec<Settings>, Cursor, Vec<f32>) {
+        let mut nets = vec![0.0; self.nets_stride];
+        let settings: Vec<Settings> =
+            arm.skills.iter().map(|skill| settings_of(skill, &arm.noise, run_seed, seed)).collect();
+        for (number, plan) in self.skills.iter().enumerate() {
+            init(&mut nets, plan, number as u32, &settings[number]);
+        }
+        (settings, Cursor::zeroed(), nets)
+    }
+}
+
+/// Words of a lesson of at most `max_steps` steps.
+pub fn lesson_stride(max_steps: u32) -> u32 {
+    LESSON_HEADER as u32 + (max_steps + 1) * RECORD_WORDS as u32
+}
+
+fn plan_of(skill: &Skill, world: &World, atlas: &mut Atlas) -> Result<SkillPlan, ShapeError> {
+    let refuse = |message: String, hint: &str| ShapeError { skill: skill.name.clone(), message, hint: hint.to_owned() };
+    let inputs: u32 = skill.inputs.iter().map(|input| input.width()).sum();
+    if inputs as usize > MAX_INPUTS || skill.inputs.len() > MAX_GROUPS {
+        let message = format!("{inputs} inputs in {} groups; {MAX_INPUTS} in {MAX_GROUPS} fit", skill.inputs.len());
+        return Err(refuse(message, "name fewer inputs"));
+    }
+    if skill.children.len() > MAX_CHILDREN || skill.starts.len() > MAX_STARTS {
+        let message = format!("at most {MAX_CHILDREN} children and {MAX_STARTS} start regions fit");
+        return Err(refuse(message, "name fewer of them"));
+    }
+    let mut plan = SkillPlan::zeroed();
+    plan.inputs = inputs;
+    plan.rows = inputs + 3;
+    plan.children = skill.children.len() as u32;
+    plan.groups = skill.inputs.len() as u32;
+    plan.starts = skill.starts.len() as u32;
+    plan.ends = skill.ends;
+    let mut first = 0;
+    for (group, input) in skill.inputs.iter().enumerate() {
+        plan.group_first[group] = first;
+        first += input.width();
+        plan.group_kind[group] = match input {
+            Input::Sonar { .. } | Input::SonarFar => GROUP_SONAR,
+            Input::Light => GROUP_LIGHT,
+            Input::Bumpers => GROUP_BUMPERS,
+            Input::Compass => GROUP_COMPASS,
+        };
+        if plan.group_kind[group] == GROUP_SONAR {
+            plan.group_table[group] = atlas.add_table(&sonar_table(*input));
+        }
+    }
+    for (child, action) in skill.children.iter().enumerate() {
+        plan.action[child] = *action as u32;
+    }
+    let mut cells_of = |region: &str| {
+        let cells = world.region_cells(region).unwrap_or_default();
+        if cells.is_empty() {
+            let message = format!("region `{region}` of world `{}` has no place for a robot", world.name);
+            return Err(refuse(message, "name another region, or make room in the world"));
+        }
+        Ok(atlas.add_cells(&cells))
+    };
+    let mut share = 0.0;
+    for (number, (region, part)) in skill.starts.iter().enumerate() {
+        share += part;
+        plan.start_share[number] = share;
+        (plan.start_offset[number], plan.start_count[number]) = cells_of(region)?;
+    }
+    (plan.tests_offset, plan.tests_count) = cells_of(&skill.tests)?;
+    Ok(plan)
+}
+
+/// What a net is given for each sonar reading, 0 to 127 inches.
+fn sonar_table(input: Input) -> [f32; SONAR_CODES] {
+    std::array::from_fn(|reading| {
+        let d = reading as f64;
+        let code = match input {
+            Input::Sonar { scale } => 2.0 * (-(d - 12.0) / f64::from(scale)).exp() - 1.0,
+            _ => 2.0 * d / 127.0 - 1.0,
+        };
+        code as f32
+    })
+}
+
+fn settings_of(skill: &Skill, noise: &Noise, run_seed: u32, seed: u32) -> Settings {
+    let learning = &skill.learning;
+    let (optimiser, rate, beta1, beta2, epsilon) = match learning.optimiser {
+        Optimiser::Sgd { rate, momentum } => (0, rate, momentum, 0.0, 1.0),
+        Optimiser::Adam { rate, beta1, beta2, epsilon } => (1, rate, beta1, beta2, epsilon),
+    };
+    let rise = learning.inverse_temperature_end - learning.inverse_temperature_start;
+    let mut reward = [0.0; EVENTS];
+    reward.copy_from_slice(&skill.reward);
+    Settings {
+        run_seed,
+        learner_seed: seed,
+        noise_kind: match noise.kind {
+            NoiseKind::Gaussian => 0,
+            NoiseKind::Uniform => 1,
+        },
+        noise_actuator: noise.actuator,
+        noise_sonar: noise.sonar,
+        noise_light: noise.light,
+        noise_compass: noise.compass,
+        hidden: learning.hidden,
+        init: learning.init,
+        gamma: learning.gamma,
+        lambda: learning.lambda,
+        optimiser,
+        rate,
+        beta1,
+        beta2,
+        epsilon2: epsilon * epsilon,
+        value_scale: 1.0 / learning.reward_scale,
+        target_limit: learning.target_limit,
+        sharpness_start: learning.inverse_temperature_start,
+        sharpness_slope: rise / learning.inverse_temperature_trials.max(1) as f32,
+        sharpness_trials: learning.inverse_temperature_trials,
+        policy_threshold: learning.policy_threshold,
+        replays: learning.replays,
+        memory: learning.memory,
+        mean_age: learning.mean_age,
+        age_decay: -1.0 / learning.mean_age,
+        taught_passes: learning.taught_passes,
+        taught_replays: learning.taught_replays,
+        taught_always: u32::from(learning.taught_always),
+        timeout_terminal: u32::from(learning.timeout_terminal),
+        mask_blocked: u32::from(learning.mask_blocked),
+        lessons: skill.lessons,
+        trials: skill.trials,
+        max_steps: skill.max_steps,
+        reward,
+    }
+}

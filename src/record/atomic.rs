@@ -1,0 +1,101 @@
+//! Writing a file so that a crash leaves either the old one or the new one.
+
+use super::RecordError;
+use std::fs::{self, File};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+/// Ends the name of every temporary file of ours, so that leftovers can be told from other people's files.
+const TEMPORARY: &str = ".skilltree-tmp";
+
+/// Writes `path` whole: temporary file beside it, fsync, read back, rename, fsync of the folder.
+///
+/// # Errors
+/// [`RecordError::NotCommitted`] if the earlier state is intact, [`RecordError::DurabilityUnknown`] after the rename.
+pub fn write(path: &Path, bytes: &[u8]) -> Result<(), RecordError> {
+    place(path, bytes)?;
+    sync_folder(folder_of(path))
+}
+
+/// As [`write`], without the last fsync: call [`sync_folder`] once after a batch of files.
+///
+/// # Errors
+/// [`RecordError::NotCommitted`]: the earlier state is intact.
+pub fn place(path: &Path, bytes: &[u8]) -> Result<(), RecordError> {
+    let temporary = temporary_name(path);
+    let attempt = write_verified(&temporary, bytes).and_then(|()| fs::rename(&temporary, path));
+    attempt.map_err(|source| {
+        // Best effort: a leftover is ignored by readers and removed by the next run.
+        let _ = fs::remove_file(&temporary);
+        RecordError::NotCommitted { path: path.into(), source }
+    })
+}
+
+fn write_verified(temporary: &Path, bytes: &[u8]) -> io::Result<()> {
+    let mut file = File::create(temporary)?;
+    file.write_all(bytes)?;
+    file.sync_all()?;
+    drop(file);
+    if fs::read(temporary)? == bytes { Ok(()) } else { Err(io::Error::other("the file reads back differently")) }
+}
+
+/// Asks the disk to keep the folder's entries.
+///
+/// # Errors
+/// [`RecordError::DurabilityUnknown`].
+pub fn sync_folder(folder: &Path) -> Result<(), RecordError> {
+    // Only Unix lets a folder be opened and flushed; elsewhere the rename itself is all there is.
+    if cfg!(unix) {
+        let synced = File::open(folder).and_then(|file| file.sync_all());
+        synced.map_err(|source| RecordError::DurabilityUnknown { path: folder.into(), source })?;
+    }
+    Ok(())
+}
+
+/// Whether a file name is that of a temporary file of ours.
+pub fn is_temporary(name: &str) -> bool {
+    name.starts_with('.') && name.ends_with(TEMPORARY)
+}
+
+/// Removes leftovers of a killed process from one folder. Call it only while holding the run folder's lock.
+///
+/// # Errors
+/// [`RecordError::Unreadable`] if the folder cannot be listed. A leftover that cannot be removed does no harm.
+pub fn remove_leftovers(folder: &Path) -> Result<(), RecordError> {
+    for name in list(folder)? {
+        if is_temporary(&name) {
+            let _ = fs::remove_file(folder.join(name));
+        }
+    }
+    Ok(())
+}
+
+/// Names in a folder, sorted; none if there is no such folder. Names that are not Unicode come out altered.
+///
+/// # Errors
+/// [`RecordError::Unreadable`].
+pub fn list(folder: &Path) -> Result<Vec<String>, RecordError> {
+    let entries = match fs::read_dir(folder) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
+        other => other.map_err(RecordError::unreadable(folder))?,
+    };
+    let mut names = Vec::new();
+    for entry in entries {
+        names.push(entry.map_err(RecordError::unreadable(folder))?.file_name().to_string_lossy().into_owned());
+    }
+    names.sort();
+    Ok(names)
+}
+
+/// The process number keeps two processes from writing the same temporary file.
+fn temporary_name(path: &Path) -> PathBuf {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    folder_of(path).join(format!(".{name}.{}{TEMPORARY}", std::process::id()))
+}
+
+fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    }
+}

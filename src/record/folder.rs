@@ -1,0 +1,253 @@
+//! The run folder while a run writes to it.
+
+use super::manifest::{FileDigest, is_plain};
+use super::{FORMAT, Manifest, Provenance, RecordError, atomic};
+use sha2::{Digest, Sha256};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::{self, File, TryLockError};
+use std::path::{Path, PathBuf};
+
+/// Name of the resolved config in a run folder.
+pub const CONFIG: &str = "config.toml";
+/// Name of the floor plan in a run folder.
+pub const WORLD: &str = "world.toml";
+const LOCK: &str = ".lock";
+const MARKER: &str = ".skilltree";
+const PARTS: &str = "parts";
+/// Starts every part: eight bytes, then the content's length (u64, little-endian), its SHA-256, and the content.
+const PART_MAGIC: &[u8; 8] = b"SKLPART1";
+const PART_HEADER: usize = 8 + 8 + 32;
+
+/// How far a run folder has come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum State {
+    /// Nothing computed yet.
+    Fresh,
+    /// Some parts are committed: the run can be resumed.
+    Partial,
+    /// The manifest is there: nothing is left to do.
+    Complete,
+}
+
+/// A run folder, locked against other writers until it is dropped or finished.
+#[derive(Debug)]
+pub struct RunFolder {
+    dir: PathBuf,
+    state: State,
+    _lock: File,
+}
+
+impl RunFolder {
+    /// Creates the folder, or opens the one that the same experiment left behind.
+    ///
+    /// # Errors
+    /// If the folder cannot be written, is in use, holds anything else than a run of exactly this config and world, or
+    /// is complete but fails verification. Nothing is overwritten.
+    pub fn open(dir: &Path, config_text: &str, world_text: &str) -> Result<Self, RecordError> {
+        fs::create_dir_all(dir).map_err(|source| RecordError::Unwritable { path: dir.into(), source })?;
+        refuse_foreign(dir)?;
+        let lock = lock(dir)?;
+        // Once more under the lock: another process may have filled the folder in between.
+        refuse_foreign(dir)?;
+        for folder in [dir.to_path_buf(), dir.join(PARTS)] {
+            atomic::remove_leftovers(&folder)?;
+        }
+        let started = !part_names(dir)?.is_empty() || dir.join(Manifest::NAME).exists();
+        atomic_once(&dir.join(MARKER), format!("skilltree run folder, format {FORMAT}\n").as_bytes())?;
+        for (name, text) in [(CONFIG, config_text), (WORLD, world_text)] {
+            match read_if_there(&dir.join(name))? {
+                Some(bytes) if bytes == text.as_bytes() => {}
+                Some(_) => return Err(RecordError::OtherExperiment { path: dir.into(), file: name }),
+                None if started => {
+                    return Err(RecordError::damaged(&dir.join(name), "missing, although results exist"));
+                }
+                None => atomic::write(&dir.join(name), text.as_bytes())?,
+            }
+        }
+        let mut folder = Self { dir: dir.into(), state: State::Fresh, _lock: lock };
+        if dir.join(Manifest::NAME).exists() {
+            super::FinishedRun::read(dir)?;
+            folder.state = State::Complete;
+            folder.remove_parts();
+        } else if started {
+            folder.state = State::Partial;
+        }
+        Ok(folder)
+    }
+
+    /// Where the folder lies.
+    pub fn dir(&self) -> &Path {
+        &self.dir
+    }
+
+    /// How far the run has come.
+    pub fn state(&self) -> State {
+        self.state
+    }
+
+    /// Names of the committed parts, sorted.
+    ///
+    /// # Errors
+    /// [`RecordError::Unreadable`] if the folder cannot be listed.
+    pub fn parts(&self) -> Result<Vec<String>, RecordError> {
+        part_names(&self.dir)
+    }
+
+    /// Commits one cohort's results under a name of letters, digits, `.`, `-`, `_`. Replaces a part of that name whole.
+    ///
+    /// # Errors
+    /// [`RecordError::Invalid`] for another name or a complete run; otherwise as [`atomic::write`].
+    pub fn commit_part(&mut self, name: &str, content: &[u8]) -> Result<(), RecordError> {
+        let path = self.part_path(name)?;
+        if self.state == State::Complete {
+            return Err(RecordError::invalid(name, "the run is complete and takes no more parts"));
+        }
+        let parts = self.dir.join(PARTS);
+        fs::create_dir_all(&parts).map_err(|source| RecordError::NotCommitted { path: parts, source })?;
+        let mut bytes = Vec::with_capacity(PART_HEADER + content.len());
+        bytes.extend_from_slice(PART_MAGIC);
+        bytes.extend_from_slice(&(content.len() as u64).to_le_bytes());
+        bytes.extend_from_slice(&Sha256::digest(content));
+        bytes.extend_from_slice(content);
+        atomic::write(&path, &bytes)?;
+        self.state = State::Partial;
+        Ok(())
+    }
+
+    /// The content of a committed part, or none if there is no such part.
+    ///
+    /// # Errors
+    /// [`RecordError::Damaged`] if the part is cut, altered or not one of ours.
+    pub fn read_part(&self, name: &str) -> Result<Option<Vec<u8>>, RecordError> {
+        let path = self.part_path(name)?;
+        let Some(mut bytes) = read_if_there(&path)? else { return Ok(None) };
+        match part_problem(&bytes) {
+            Some(problem) => Err(RecordError::Damaged {
+                path,
+                problem: problem.into(),
+                hint: "Remove this file and give the same command again: only this part is computed anew",
+            }),
+            None => Ok(Some(bytes.split_off(PART_HEADER))),
+        }
+    }
+
+    /// Writes the results, each whole, then the manifest that makes the run complete, then removes the parts. The files
+    /// may come from a lazy iterator, so that they need not be in memory together. The lock is given back.
+    ///
+    /// # Errors
+    /// [`RecordError::Invalid`] for a path that leaves the folder, is taken or comes twice, or if the run is complete;
+    /// otherwise as [`atomic::write`]. After an error the parts are still there, so that the run can be resumed.
+    pub fn finish<Files>(self, files: Files, provenance: Provenance) -> Result<Manifest, RecordError>
+    where
+        Files: IntoIterator<Item = (String, Vec<u8>)>,
+    {
+        if self.state == State::Complete {
+            return Err(RecordError::invalid(Manifest::NAME, "the run is already complete"));
+        }
+        let mut digests = BTreeMap::new();
+        for name in [CONFIG, WORLD] {
+            let path = self.dir.join(name);
+            let digest = FileDigest::of_file(&path).map_err(RecordError::unreadable(&path))?;
+            digests.insert(name.to_owned(), digest);
+        }
+        let mut folders = BTreeSet::from([self.dir.clone()]);
+        for (name, bytes) in files {
+            let reserved = name == Manifest::NAME || name.split('/').next() == Some(PARTS);
+            if !is_plain(&name) || reserved || digests.contains_key(&name) {
+                return Err(RecordError::invalid(name, "not a free path inside the run folder"));
+            }
+            let path = self.dir.join(&name);
+            if let Some(folder) = path.parent().filter(|folder| !folders.contains(*folder)) {
+                let failed = |source| RecordError::NotCommitted { path: folder.into(), source };
+                fs::create_dir_all(folder).map_err(failed)?;
+                atomic::remove_leftovers(folder)?;
+                folders.insert(folder.into());
+            }
+            atomic::place(&path, &bytes)?;
+            digests.insert(name, FileDigest::of(&bytes));
+        }
+        for folder in folders.iter().rev() {
+            atomic::sync_folder(folder)?;
+        }
+        let manifest = Manifest { format: FORMAT, provenance, files: digests };
+        atomic::write(&self.dir.join(Manifest::NAME), &manifest.to_bytes()?)?;
+        self.remove_parts();
+        Ok(manifest)
+    }
+
+    fn part_path(&self, name: &str) -> Result<PathBuf, RecordError> {
+        if is_plain(name) && !name.contains('/') {
+            Ok(self.dir.join(PARTS).join(name))
+        } else {
+            Err(RecordError::invalid(name, "not a name for a part"))
+        }
+    }
+
+    /// Best effort: parts of a complete run are only wasted space, and the next opening tries again.
+    fn remove_parts(&self) {
+        for name in part_names(&self.dir).unwrap_or_default() {
+            let _ = fs::remove_file(self.dir.join(PARTS).join(name));
+        }
+        let _ = fs::remove_dir(self.dir.join(PARTS));
+    }
+}
+
+/// Takes the lock that keeps two processes from writing to one folder. It is given back when the file is dropped, or
+/// by the operating system when the process ends in any way.
+///
+/// # Errors
+/// [`RecordError::Busy`] if another holds it, [`RecordError::Unwritable`] if it cannot be taken at all.
+pub fn lock(dir: &Path) -> Result<File, RecordError> {
+    let unwritable = |source| RecordError::Unwritable { path: dir.into(), source };
+    let file = File::options().create(true).append(true).open(dir.join(LOCK)).map_err(unwritable)?;
+    match file.try_lock() {
+        Ok(()) => Ok(file),
+        Err(TryLockError::WouldBlock) => Err(RecordError::Busy { path: dir.into() }),
+        Err(TryLockError::Error(source)) => Err(unwritable(source)),
+    }
+}
+
+/// A folder is ours if it has the marker, which is the first file written after the lock.
+fn refuse_foreign(dir: &Path) -> Result<(), RecordError> {
+    let marker = dir.join(MARKER);
+    let expected = format!("skilltree run folder, format {FORMAT}\n");
+    if let Some(bytes) = read_if_there(&marker)? {
+        let found = String::from_utf8_lossy(&bytes);
+        return match found.strip_prefix("skilltree run folder, format ") {
+            Some(_) if found == expected => Ok(()),
+            Some(version) => Err(RecordError::Format { path: marker, found: version.trim().into(), known: FORMAT }),
+            None => Err(RecordError::damaged(&marker, "not the text that skilltree writes")),
+        };
+    }
+    match atomic::list(dir)?.into_iter().find(|name| name != LOCK && !atomic::is_temporary(name)) {
+        Some(found) => Err(RecordError::Foreign { path: dir.into(), found }),
+        None => Ok(()),
+    }
+}
+
+fn atomic_once(path: &Path, bytes: &[u8]) -> Result<(), RecordError> {
+    if path.exists() { Ok(()) } else { atomic::write(path, bytes) }
+}
+
+fn read_if_there(path: &Path) -> Result<Option<Vec<u8>>, RecordError> {
+    match fs::read(path) {
+        Ok(bytes) => Ok(Some(bytes)),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
+        Err(source) => Err(RecordError::Unreadable { path: path.into(), source }),
+    }
+}
+
+fn part_names(dir: &Path) -> Result<Vec<String>, RecordError> {
+    Ok(atomic::list(&dir.join(PARTS))?.into_iter().filter(|name| is_plain(name)).collect())
+}
+
+fn part_problem(bytes: &[u8]) -> Option<&'static str> {
+    let Some((header, content)) = bytes.split_at_checked(PART_HEADER) else { return Some("cut within its header") };
+    if &header[..8] != PART_MAGIC {
+        return Some("not a part of a skilltree run");
+    }
+    if header[8..16] != (content.len() as u64).to_le_bytes() {
+        return Some("its length is not the one that was written");
+    }
+    (header[16..] != Sha256::digest(content)[..]).then_some("its content is not what was written")
+}

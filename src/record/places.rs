@@ -1,0 +1,44 @@
+//! `places.json`: what the sensors read at the world's named places, without noise.
+
+use super::RecordError;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// One reading of the sensors at a named place. Keys that are not listed here are allowed and ignored.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PlaceReading {
+    /// The place's name in the world file.
+    pub place: String,
+    /// Inches to the right.
+    pub x: f32,
+    /// Inches up.
+    pub y: f32,
+    /// Degrees, 0 = east, counter-clockwise.
+    pub heading: f32,
+    /// Distances in inches from the robot's centre; index 0 straight ahead, then counter-clockwise every 15 degrees.
+    pub sonar: [u32; 24],
+    /// 1 where the light is seen, in the same order.
+    pub light: [u8; 24],
+}
+
+/// JSON text of `places.json`.
+///
+/// # Errors
+/// [`RecordError::Invalid`] if a number has no JSON form.
+pub fn write_places(readings: &[PlaceReading]) -> Result<Vec<u8>, RecordError> {
+    let invalid = |error: serde_json::Error| RecordError::invalid("places.json", error.to_string());
+    Ok((serde_json::to_string_pretty(readings).map_err(invalid)? + "\n").into_bytes())
+}
+
+/// Reads the content of `places.json`; `path` is only for messages.
+///
+/// # Errors
+/// [`RecordError::Damaged`] for anything but an array of readings with finite poses.
+pub fn read_places(bytes: &[u8], path: &Path) -> Result<Vec<PlaceReading>, RecordError> {
+    let damaged = |error: serde_json::Error| RecordError::damaged(path, error.to_string());
+    let readings: Vec<PlaceReading> = serde_json::from_slice(bytes).map_err(damaged)?;
+    match readings.iter().find(|r| !(r.x.is_finite() && r.y.is_finite() && r.heading.is_finite())) {
+        Some(reading) => Err(RecordError::damaged(path, format!("the pose of `{}` is not finite", reading.place))),
+        None => Ok(readings),
+    }
+}

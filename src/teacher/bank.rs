@@ -1,0 +1,180 @@
+//! Demonstrations: the bank of taught lessons, and the planner's own tests.
+
+use super::planner::{Planner, collided, origin_of};
+use crate::config::plan::Skill;
+use crate::learner::layout::{Settings, SkillPlan};
+use crate::learner::memory::{Scratch, Shared};
+use crate::lesson::record::{CUT, ENDED, note, write_header, write_record};
+use crate::math::rng::{Purpose, Stream, draw, noise, roll};
+use crate::robot::motion::{NO_ACTION, move_body};
+use crate::robot::noise::noise_of;
+use crate::skill::observe::{DICE_ACTUATOR, observe};
+use crate::skill::reward::{passed_door, reward_of, room_of};
+use crate::skill::start::{start_pose, start_region};
+use crate::world::Pose;
+use rayon::prelude::*;
+
+/// Demonstrations tried for each lesson wanted, before the teacher gives up.
+const TRIES: u32 = 16;
+/// Demonstrations made at a time.
+const BATCH: u32 = 64;
+
+/// A skill to be taught: its planner and everything that its trials depend on.
+#[derive(Debug)]
+pub struct Teacher<'a> {
+    /// What all learners share: floor, region cells.
+    pub shared: &'a Shared,
+    /// The solved task.
+    pub planner: &'a Planner,
+    /// The skill's shape.
+    pub plan: &'a SkillPlan,
+    /// Noise, rewards and limits of the trials; the seeds are the run's.
+    pub settings: &'a Settings,
+    /// Number of the skill, which keeps its random numbers apart.
+    pub number: u32,
+}
+
+/// One demonstration.
+#[derive(Debug, Clone)]
+pub struct Demonstration {
+    /// Where it began.
+    pub start: Pose,
+    /// The lesson's words, as they stand in the bank.
+    pub lesson: Vec<u32>,
+}
+
+impl Demonstration {
+    /// Steps taken.
+    pub fn steps(&self) -> u32 {
+        self.lesson[0]
+    }
+
+    /// Whether the goal was achieved.
+    pub fn achieved(&self) -> bool {
+        self.lesson[1] == ENDED
+    }
+
+    /// Sum of the rewards.
+    pub fn reward(&self) -> f32 {
+        f32::from_bits(self.lesson[2])
+    }
+
+    /// Collisions.
+    pub fn collisions(&self) -> u32 {
+        self.lesson[3]
+    }
+}
+
+/// The teacher could not achieve the skill often enough.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "skill `{skill}`: the teacher achieved it in only {lessons} of {tries} demonstrations, and {wanted} lessons are wanted\nhint: widen `starts`, raise `max_steps`, or lower `teacher.bank`"
+)]
+pub struct TeacherError {
+    /// The skill's name.
+    pub skill: String,
+    /// Lessons that succeeded.
+    pub lessons: u32,
+    /// Demonstrations tried.
+    pub tries: u32,
+    /// Lessons wanted.
+    pub wanted: u32,
+}
+
+impl Teacher<'_> {
+    /// Words of `wanted` lessons, each a demonstration that achieved the goal (or ran its full length, where
+    /// the skill has no end).
+    ///
+    /// # Errors
+    /// Where too few demonstrations succeed.
+    pub fn bank(&self, skill: &Skill, wanted: u32) -> Result<Vec<u32>, TeacherError> {
+        let mut words = Vec::new();
+        let mut lessons = 0;
+        let mut tried = 0;
+        while lessons < wanted && tried < wanted * TRIES {
+            let batch: Vec<Demonstration> = (tried..tried + BATCH)
+                .into_par_iter()
+                .map(|trial| self.demonstrate(trial, self.training_start(trial)))
+                .collect();
+            tried += BATCH;
+            for demonstration in batch {
+                if lessons < wanted && (demonstration.achieved() || self.plan.ends == 0) {
+                    words.extend(demonstration.lesson);
+                    lessons += 1;
+                }
+            }
+        }
+        if lessons < wanted {
+            return Err(TeacherError { skill: skill.name.clone(), lessons, tries: tried, wanted });
+        }
+        Ok(words)
+    }
+
+    /// The planner's own test trials, from the region in which the skill is tested.
+    pub fn tests(&self, episodes: u32) -> Vec<Demonstration> {
+        // Above the bank's numbers, so that no test repeats a lesson.
+        let first = 1 << 20;
+        (first..first + episodes)
+            .into_par_iter()
+            .map(|trial| {
+                let words = draw(self.stream(trial, 0, Purpose::TeacherStart), 0);
+                let pose = start_pose(&self.shared.atlas, self.plan.tests_offset, self.plan.tests_count, words);
+                self.demonstrate(trial, pose)
+            })
+            .collect()
+    }
+
+    fn stream(&self, trial: u32, step: u32, purpose: Purpose) -> Stream {
+        let key = [self.settings.run_seed, self.settings.learner_seed];
+        Stream { key, skill: self.number, trial, step, purpose: purpose as u32 }
+    }
+
+    fn training_start(&self, trial: u32) -> Pose {
+        let words = draw(self.stream(trial, 0, Purpose::TeacherStart), 0);
+        let region = start_region(self.plan, words[0]) as usize;
+        start_pose(&self.shared.atlas, self.plan.start_offset[region], self.plan.start_count[region], words)
+    }
+
+    fn demonstrate(&self, trial: u32, start: Pose) -> Demonstration {
+        let floor = &self.shared.floor;
+        let terms = noise_of(self.settings);
+        let mut scratch = Scratch::default();
+        let mut lesson = vec![0; self.plan.lesson_stride as usize];
+        let origin = room_of(&floor.plan, start.x, start.y);
+        let planned_origin = origin_of(floor, start);
+        let (mut pose, mut touch) = (start, 0);
+        let (mut step, mut reward, mut collisions, mut end) = (0, 0.0, 0, 0);
+        while end == 0 {
+            let dice = roll(self.stream(trial, step, Purpose::Teacher));
+            observe(self.shared, &mut scratch, &dice, pose.x, pose.y, pose.heading, touch, terms);
+            let child = self.planner.choose(floor, planned_origin, pose) as u32;
+            let slip = terms.actuator * noise(terms.kind, dice.x[DICE_ACTUATOR], dice.y[DICE_ACTUATOR]) + 1.0;
+            let moved = move_body(floor, pose.x, pose.y, pose.heading, self.plan.action[child as usize], slip);
+            let events = moved.events | passed_door(&floor.plan, origin, moved.x, moved.y);
+            let earned = reward_of(self.settings, events);
+            note(&mut scratch.record, child, NO_ACTION, events, earned);
+            write_record(&mut lesson, &scratch.record, 0, step);
+            pose = Pose { x: moved.x, y: moved.y, heading: moved.heading };
+            touch = moved.bumpers;
+            step += 1;
+            reward += earned;
+            collisions += u32::from(collided(events));
+            if events & self.plan.ends != 0 {
+                end = ENDED;
+            } else if step >= self.settings.max_steps {
+                end = CUT;
+            }
+        }
+        let dice = roll(self.stream(trial, step, Purpose::Teacher));
+        observe(self.shared, &mut scratch, &dice, pose.x, pose.y, pose.heading, touch, terms);
+        note(&mut scratch.record, NO_ACTION, NO_ACTION, 0, 0.0);
+        write_record(&mut lesson, &scratch.record, 0, step);
+        write_header(&mut lesson, 0, step, end, reward, collisions);
+        Demonstration { start, lesson }
+    }
+}
+
+/// Settings under which a teacher demonstrates: an arm's, with the run's own key.
+pub fn teacher_settings(settings: &Settings) -> Settings {
+    Settings { learner_seed: u32::MAX, ..*settings }
+}

@@ -1,0 +1,291 @@
+//! Value iteration on a grid of poses, for a skill's own reward under the actuator noise.
+//!
+//! The grid is 5 in x 5 in x 15 degrees. Actuator noise enters by a three-point quadrature; between grid
+//! poses values are interpolated, over the poses that a robot can take.
+
+use crate::config::plan::{Action, Event, Noise, NoiseKind, Skill};
+use crate::robot::floor::Floor;
+use crate::robot::motion::{COLLISION, PASSED_DOOR, move_body};
+use crate::skill::reward::{NOWHERE, passed_door, room_of};
+use crate::world::{Pose, World};
+use glam::Vec2;
+use rayon::prelude::*;
+
+/// Distance of grid points, inches.
+const PITCH: f32 = 5.0;
+/// Headings of the grid.
+const HEADINGS: usize = 24;
+/// Degrees between them.
+const HEADING_STEP: f32 = 15.0;
+/// Sweeps stop when no value changes by more than this share of the largest reward.
+const TOLERANCE: f32 = 1.0e-5;
+/// More sweeps than any discount below 1 needs for [`TOLERANCE`] in worlds of this size.
+const MOST_SWEEPS: usize = 2_000;
+
+/// The solved task: how good every pose is, and what to do there.
+#[derive(Debug, Clone)]
+pub struct Planner {
+    columns: usize,
+    rows: usize,
+    free: Vec<bool>,
+    /// Values by room of origin; one entry where the room does not matter.
+    values: Vec<Vec<f32>>,
+    children: Vec<Action>,
+    reward: [f32; Event::ALL.len()],
+    ends: u32,
+    discount: f32,
+    backward_cost: f32,
+    slips: [(f32, f32); 3],
+}
+
+/// What one action does from one pose under one slip of the actuators.
+#[derive(Debug, Clone, Copy)]
+struct Outcome {
+    pose: Pose,
+    reward: f32,
+    ended: bool,
+}
+
+impl Planner {
+    /// Plans a skill. `discount` is the teacher's own; `backward_cost`, in reward units, keeps it from
+    /// backing up where turning serves as well.
+    pub fn new(world: &World, floor: &Floor, skill: &Skill, noise: &Noise, discount: f32, backward_cost: f32) -> Self {
+        let columns = (world.size.x / PITCH) as usize + 1;
+        let rows = (world.size.y / PITCH) as usize + 1;
+        let free = (0..columns * rows)
+            .map(|i| world.is_free(Vec2::new((i % columns) as f32 * PITCH, (i / columns) as f32 * PITCH)))
+            .collect();
+        let origins = if skill.ends & PASSED_DOOR == 0 && skill.reward[Event::PassedDoor as usize] == 0.0 {
+            1
+        } else {
+            world.rooms.len()
+        };
+        let mut planner = Self {
+            columns,
+            rows,
+            free,
+            values: Vec::new(),
+            children: skill.children.clone(),
+            reward: skill.reward,
+            ends: skill.ends,
+            discount,
+            backward_cost,
+            slips: slips(noise),
+        };
+        planner.values = (0..origins).map(|origin| planner.solve(floor, origin as u32)).collect();
+        planner
+    }
+
+    /// Value of a pose, in reward units, for a trial that began in room `origin`.
+    pub fn value(&self, origin: u32, pose: Pose) -> f32 {
+        self.interpolate(&self.values[self.origin_index(origin)], pose)
+    }
+
+    /// Position in the skill's children of the best one at a pose, for a trial that began in room `origin`.
+    pub fn choose(&self, floor: &Floor, origin: u32, pose: Pose) -> usize {
+        let mut best = (0, f32::NEG_INFINITY);
+        for (child, action) in self.children.iter().enumerate() {
+            let worth = self.worth(floor, origin, pose, *action);
+            if worth > best.1 {
+                best = (child, worth);
+            }
+        }
+        best.0
+    }
+
+    /// Expected return of an action at a pose and of the best ones after it.
+    pub fn worth(&self, floor: &Floor, origin: u32, pose: Pose, action: Action) -> f32 {
+        let values = &self.values[self.origin_index(origin)];
+        let cost = if action == Action::Backward { self.backward_cost } else { 0.0 };
+        let expected: f32 = self
+            .slips
+            .iter()
+            .map(|(slip, weight)| {
+                let outcome = self.outcome(floor, origin, pose, action, *slip);
+                let after = if outcome.ended { 0.0 } else { self.interpolate(values, outcome.pose) };
+                weight * (outcome.reward + self.discount * after)
+            })
+            .sum();
+        expected - cost
+    }
+
+    fn origin_index(&self, origin: u32) -> usize {
+        if (origin as usize) < self.values.len() { origin as usize } else { 0 }
+    }
+
+    fn outcome(&self, floor: &Floor, origin: u32, pose: Pose, action: Action, slip: f32) -> Outcome {
+        let moved = move_body(floor, pose.x, pose.y, pose.heading, action as u32, slip);
+        let events = moved.events | passed_door(&floor.plan, origin, moved.x, moved.y);
+        let reward = (0..Event::ALL.len()).filter(|i| (events >> i) & 1 == 1).map(|i| self.reward[i]).sum();
+        let pose = Pose { x: moved.x, y: moved.y, heading: moved.heading };
+        Outcome { pose, reward, ended: events & self.ends != 0 }
+    }
+
+    /// Values of all grid poses for trials that began in room `origin`.
+    fn solve(&self, floor: &Floor, origin: u32) -> Vec<f32> {
+        let moves: Vec<Action> = self.children.iter().copied().filter(|a| a.travel() != 0.0).collect();
+        let turns: Vec<Action> = self.children.iter().copied().filter(|a| a.turn() != 0.0).collect();
+        let points: Vec<usize> = (0..self.free.len()).filter(|point| self.free[*point]).collect();
+        // A move keeps the heading, so its outcome blends at most four points of the same heading.
+        let blends: Vec<Vec<Blend>> = points
+            .par_iter()
+            .map(|point| {
+                let x = (point % self.columns) as f32 * PITCH;
+                let y = (point / self.columns) as f32 * PITCH;
+                let mut blends = Vec::with_capacity(HEADINGS * moves.len() * self.slips.len());
+                for heading in 0..HEADINGS {
+                    let pose = Pose { x, y, heading: heading as f32 * HEADING_STEP };
+                    for action in &moves {
+                        for (slip, _) in self.slips {
+                            let outcome = self.outcome(floor, origin, pose, *action, slip);
+                            blends.push(self.blend(&outcome));
+                        }
+                    }
+                }
+                blends
+            })
+            .collect();
+        let scale = self.reward.iter().fold(0.0_f32, |most, amount| most.max(amount.abs())).max(1.0e-6);
+        let mut values = vec![0.0; self.free.len() * HEADINGS];
+        let mut fresh = vec![[0.0; HEADINGS]; points.len()];
+        for _sweep in 0..MOST_SWEEPS {
+            fresh.par_iter_mut().zip(&points).zip(&blends).for_each(|((fresh, point), blends)| {
+                for (heading, fresh) in fresh.iter_mut().enumerate() {
+                    *fresh = self.backup(&values, *point, heading, &moves, &turns, blends);
+                }
+            });
+            let mut change = 0.0_f32;
+            for (point, fresh) in points.iter().zip(&fresh) {
+                let old = &mut values[point * HEADINGS..(point + 1) * HEADINGS];
+                for (old, fresh) in old.iter_mut().zip(fresh) {
+                    change = change.max((*fresh - *old).abs());
+                    *old = *fresh;
+                }
+            }
+            if change < TOLERANCE * scale {
+                break;
+            }
+        }
+        values
+    }
+
+    fn backup(
+        &self,
+        values: &[f32],
+        point: usize,
+        heading: usize,
+        moves: &[Action],
+        turns: &[Action],
+        blends: &[Blend],
+    ) -> f32 {
+        let mut best = f32::NEG_INFINITY;
+        let per_heading = moves.len() * self.slips.len();
+        for (number, action) in moves.iter().enumerate() {
+            let first = heading * per_heading + number * self.slips.len();
+            let mut worth = if *action == Action::Backward { -self.backward_cost } else { 0.0 };
+            for (blend, (_, weight)) in blends[first..first + self.slips.len()].iter().zip(&self.slips) {
+                let mut after = 0.0;
+                for (neighbour, share) in blend.points.iter().zip(&blend.shares) {
+                    after += share * values[*neighbour as usize * HEADINGS + heading];
+                }
+                worth += weight * (blend.reward + self.discount * after);
+            }
+            best = best.max(worth);
+        }
+        for action in turns {
+            let mut worth = 0.0;
+            for (slip, weight) in self.slips {
+                let turned = heading as f32 + action.turn() * slip / HEADING_STEP;
+                worth += weight * self.discount * along_heading(values, point, turned);
+            }
+            best = best.max(worth);
+        }
+        best
+    }
+
+    /// Where an outcome lies between the grid's points.
+    fn blend(&self, outcome: &Outcome) -> Blend {
+        let mut blend = Blend { points: [0; 4], shares: [0.0; 4], reward: outcome.reward };
+        if !outcome.ended {
+            for (slot, (point, share)) in self.corners(outcome.pose).into_iter().enumerate() {
+                blend.points[slot] = point as u32;
+                blend.shares[slot] = share;
+            }
+        }
+        blend
+    }
+
+    /// The four grid points round a pose with their shares; points that no robot can take have none.
+    fn corners(&self, pose: Pose) -> [(usize, f32); 4] {
+        let column = ((pose.x / PITCH) as usize).min(self.columns - 2);
+        let row = ((pose.y / PITCH) as usize).min(self.rows - 2);
+        let dx = pose.x / PITCH - column as f32;
+        let dy = pose.y / PITCH - row as f32;
+        let first = row * self.columns + column;
+        let mut corners = [
+            (first, (1.0 - dx) * (1.0 - dy)),
+            (first + 1, dx * (1.0 - dy)),
+            (first + self.columns, (1.0 - dx) * dy),
+            (first + self.columns + 1, dx * dy),
+        ];
+        let mut total = 0.0;
+        for (point, share) in &mut corners {
+            // A robot that touches a wall stands between points of which some lie too close to it.
+            *share = if self.free[*point] { share.max(1.0e-6) } else { 0.0 };
+            total += *share;
+        }
+        if total > 0.0 {
+            for (_, share) in &mut corners {
+                *share /= total;
+            }
+        }
+        corners
+    }
+
+    fn interpolate(&self, values: &[f32], pose: Pose) -> f32 {
+        self.corners(pose)
+            .into_iter()
+            .filter(|(_, share)| *share > 0.0)
+            .map(|(point, share)| share * along_heading(values, point, pose.heading / HEADING_STEP))
+            .sum()
+    }
+}
+
+/// Grid points that an outcome blends, their shares, and its reward.
+#[derive(Debug, Clone, Copy)]
+struct Blend {
+    points: [u32; 4],
+    shares: [f32; 4],
+    reward: f32,
+}
+
+/// Value at a grid point between its headings; `turn` counts headings and may lie beyond them.
+fn along_heading(values: &[f32], point: usize, turn: f32) -> f32 {
+    let low = turn.floor();
+    let part = turn - low;
+    let first = (low as i32).rem_euclid(HEADINGS as i32) as usize;
+    let second = (first + 1) % HEADINGS;
+    let base = point * HEADINGS;
+    values[base + first] * (1.0 - part) + values[base + second] * part
+}
+
+/// Three-point quadrature of the actuators' slip: factors and weights.
+fn slips(noise: &Noise) -> [(f32, f32); 3] {
+    let (far, weight) = match noise.kind {
+        NoiseKind::Gaussian => (3.0_f32.sqrt(), 1.0 / 6.0),
+        NoiseKind::Uniform => (0.6_f32.sqrt(), 5.0 / 18.0),
+    };
+    let reach = noise.actuator * far;
+    [(1.0 - reach, weight), (1.0, 1.0 - 2.0 * weight), (1.0 + reach, weight)]
+}
+
+/// Whether an event set holds a collision; the demonstrations count them.
+pub fn collided(events: u32) -> bool {
+    events & COLLISION != 0
+}
+
+/// Room in which a trial that begins here begins.
+pub fn origin_of(floor: &Floor, pose: Pose) -> u32 {
+    let room = room_of(&floor.plan, pose.x, pose.y);
+    if room == NOWHERE { 0 } else { room }
+}

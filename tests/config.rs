@@ -1,0 +1,437 @@
+//! Configs: what the shipped files say, layers, seeds, the resolved text, and a good message for every mistake.
+
+use skilltree::config::plan::{Action, Event, Input, NoiseKind, Optimiser, Plan};
+use skilltree::config::{ConfigError, Overrides, Place, keys, load, parse_seeds};
+use std::path::{Path, PathBuf};
+
+fn shipped(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("configs").join(name)
+}
+
+fn with(set: &[&str]) -> Overrides {
+    Overrides { set: set.iter().map(|&text| text.to_owned()).collect(), seeds: None }
+}
+
+fn docking(set: &[&str]) -> Plan {
+    load(&shipped("docking.toml"), &with(set)).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn refused(set: &[&str]) -> ConfigError {
+    match load(&shipped("docking.toml"), &with(set)) {
+        Ok(_) => panic!("accepted {set:?}"),
+        Err(error) => error,
+    }
+}
+
+fn rate(plan: &Plan, arm: &str) -> f32 {
+    let arm = plan.arms.iter().find(|a| a.name == arm).expect("the arm");
+    match arm.skills[0].learning.optimiser {
+        Optimiser::Sgd { rate, .. } | Optimiser::Adam { rate, .. } => rate,
+    }
+}
+
+#[test]
+fn docking_is_as_published() {
+    let plan = docking(&[]);
+    assert_eq!(plan.name, "docking");
+    assert_eq!(plan.run_seed, 1993);
+    assert_eq!(plan.seeds, [0, 1, 2, 3, 4, 5, 6]);
+    assert_eq!(plan.world.name, "office");
+    assert_eq!(plan.evaluate.at, [0, 25, 50, 75, 100, 150, 200, 250, 300]);
+    assert_eq!(plan.evaluate.episodes, 100);
+    let names: Vec<&str> = plan.arms.iter().map(|arm| arm.name.as_str()).collect();
+    assert_eq!(names, ["taught-adam", "taught-sgd", "taught-td0", "untaught-adam", "untaught-sgd"]);
+    for arm in &plan.arms {
+        let noise = arm.noise;
+        assert_eq!((noise.kind, noise.actuator, noise.sonar), (NoiseKind::Gaussian, 0.08, 0.10));
+        let dock = &arm.skills[0];
+        assert_eq!(arm.skills.len(), 1);
+        assert_eq!(dock.name, "dock");
+        assert_eq!(dock.inputs, [Input::Sonar { scale: 60.0 }, Input::Light, Input::Bumpers]);
+        assert_eq!(dock.children, Action::ALL.to_vec());
+        assert_eq!(dock.reward, [100.0, -10.0, 0.0]);
+        assert_eq!(dock.starts, [("light-area".to_owned(), 0.8), ("anywhere".to_owned(), 0.2)]);
+        assert_eq!((dock.tests.as_str(), dock.ends), ("light-area", Event::Docked.bit()));
+        assert_eq!((dock.max_steps, dock.trials), (30, 300));
+        assert_eq!(dock.lessons, if arm.name.starts_with("untaught") { 0 } else { 10 });
+    }
+    let learning = |i: usize| &plan.arms[i].skills[0].learning;
+    let (adam, sgd, td0) = (learning(0), learning(1), learning(2));
+    assert_eq!(adam.optimiser, Optimiser::Adam { rate: 0.0015, beta1: 0.9, beta2: 0.999, epsilon: 1e-8 });
+    assert_eq!((adam.hidden, adam.init, adam.gamma, adam.lambda), (32, 0.5, 0.9, 0.95));
+    assert_eq!((adam.replays, adam.memory, adam.mean_age, adam.policy_threshold), (60, 300, 100.0, 0.05));
+    assert!(adam.timeout_terminal && adam.mask_blocked && adam.taught_always);
+    assert_eq!(sgd.optimiser, Optimiser::Sgd { rate: 0.15, momentum: 0.0 });
+    assert_eq!((sgd.init, sgd.gamma, sgd.lambda, sgd.policy_threshold), (0.2, 0.95, 0.8, 0.001));
+    assert_eq!((sgd.replays, sgd.memory, sgd.taught_passes, sgd.taught_replays), (30, 100, 5, 2));
+    assert!(!sgd.timeout_terminal && !sgd.mask_blocked);
+    assert_eq!(td0.lambda, 0.0);
+    assert_eq!(&skilltree::config::plan::Learning { lambda: 0.95, ..td0.clone() }, adam);
+    assert_eq!((learning(3), learning(4)), (adam, sgd));
+}
+
+#[test]
+fn quick_has_the_same_arms_and_fewer_trials() {
+    let quick = load(&shipped("quick.toml"), &Overrides::default()).unwrap_or_else(|error| panic!("{error}"));
+    let docking = docking(&["skill.dock.trials=150"]);
+    assert_eq!(quick.arms, docking.arms);
+    assert_ne!(quick.title, docking.title);
+    let steps = |plan: &Plan| plan.arms.len() * plan.seeds.len() * plan.arms[0].skills[0].trials as usize;
+    // At 1 ms a trial this is about 5 seconds of training on one core.
+    assert!(steps(&quick) <= 6000, "{}", steps(&quick));
+}
+
+#[test]
+fn every_office_serves_the_docking_config() {
+    for name in ["office", "office-easy", "office-hard"] {
+        assert_eq!(docking(&[&format!("world=worlds/{name}.toml")]).world.name, name);
+    }
+}
+
+#[test]
+fn every_default_is_read_and_in_range() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("small.toml");
+    let world = shipped("worlds/office.toml").display().to_string();
+    let text = format!("world = '{world}'\n[skill.s]\ninputs = ['sonar']\nreward = {{ docked = 1 }}\n");
+    std::fs::write(&path, text).expect("a file");
+    let plan = load(&path, &Overrides::default()).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(plan.arms.len(), 1);
+    assert_eq!(plan.arms[0].name, "base");
+    // The defaults are the taught Adam arm of docking.
+    assert_eq!(plan.arms[0].skills[0].learning, docking(&[]).arms[0].skills[0].learning);
+    assert_eq!(plan.arms[0].noise, docking(&[]).arms[0].noise);
+    assert_eq!((plan.teacher, plan.evaluate), (docking(&[]).teacher, docking(&[]).evaluate));
+    for key in keys::ALL {
+        let last = key.path.rsplit('.').next().expect("a name");
+        let written = plan.resolved.contains(&format!("{last} = ")) || plan.resolved.contains(&format!(".{last}]"));
+        assert_eq!(written, key.path != "arms", "{}", key.path);
+        assert!(!key.meaning.is_empty() && !key.allowed.to_string().is_empty());
+    }
+}
+
+fn same(a: &Plan, b: &Plan) {
+    assert_eq!(a.name, b.name);
+    assert_eq!(a.title, b.title);
+    assert_eq!((a.run_seed, &a.seeds), (b.run_seed, &b.seeds));
+    assert_eq!((&a.world, &a.world_text), (&b.world, &b.world_text));
+    assert_eq!(a.arms, b.arms);
+    assert_eq!((&a.evaluate, &a.teacher), (&b.evaluate, &b.teacher));
+    assert_eq!(a.resolved, b.resolved);
+}
+
+#[test]
+fn the_resolved_text_gives_the_same_plan() {
+    let cases: [&[&str]; 4] = [
+        &[],
+        &["arms=[\"untaught-sgd\", \"taught-adam\"]", "title=\"a \\\"quoted\\\" \\\\ title\\nin two lines\""],
+        &[
+            "arm.taught-sgd.learning.rate=0.3",
+            "learning.gamma=0.123456789",
+            "seed=4294967295",
+            "learning.epsilon=1e-10",
+        ],
+        &["skill.dock.starts={\"room:A\" = 0.25, anywhere = 0.75}", "robot.noise.kind=uniform"],
+    ];
+    for set in cases {
+        let overrides = Overrides { seeds: Some("3,5..8".to_owned()), ..with(set) };
+        let plan = load(&shipped("docking.toml"), &overrides).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(plan.seeds, [3, 5, 6, 7]);
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("config.toml");
+        std::fs::write(&path, &plan.resolved).expect("a file");
+        std::fs::write(folder.path().join("world.toml"), &plan.world_text).expect("a file");
+        let again = load(&path, &Overrides::default()).unwrap_or_else(|error| panic!("{error}\n{}", plan.resolved));
+        same(&plan, &again);
+        assert_eq!(again.source, path);
+    }
+}
+
+#[test]
+fn layers_lie_over_one_another() {
+    // On a base key: wins over the file's base, not over an arm's own key.
+    let plan = docking(&["learning.rate=0.01"]);
+    assert_eq!((rate(&plan, "taught-adam"), rate(&plan, "taught-sgd")), (0.01, 0.15));
+    // On an arm's key: that arm only.
+    let plan = docking(&["arm.taught-sgd.learning.rate=0.3"]);
+    assert_eq!(
+        (rate(&plan, "taught-sgd"), rate(&plan, "untaught-sgd"), rate(&plan, "taught-adam")),
+        (0.3, 0.15, 0.0015)
+    );
+    // On a skill's learning: over `learning` of base and arm.
+    let plan = docking(&["skill.dock.learning.rate=0.02"]);
+    assert_eq!((rate(&plan, "taught-adam"), rate(&plan, "taught-sgd")), (0.02, 0.02));
+    // The later of two wins, and an arm without the key takes it.
+    let plan = docking(&["skill.dock.trials=5", "skill.dock.trials = 7", "arm.taught-td0.skill.dock.trials=9"]);
+    assert_eq!(plan.arms.iter().map(|a| a.skills[0].trials).collect::<Vec<_>>(), [7, 7, 9, 7, 7]);
+    // Rewards merge, start shares are replaced.
+    let plan = docking(&["skill.dock.reward.collision=0", "skill.dock.starts=light-area", "skill.dock.tests=room:A"]);
+    assert_eq!(plan.arms[0].skills[0].reward, [100.0, 0.0, 0.0]);
+    assert_eq!(plan.arms[0].skills[0].starts, [("light-area".to_owned(), 1.0)]);
+    assert_eq!(plan.arms[0].skills[0].tests, "room:A");
+    let plan = docking(&["skill.dock.starts={light-area=0.5, near-doors=0.5}"]);
+    assert_eq!(plan.arms[0].skills[0].starts.len(), 2);
+    // A subset of the arms keeps the file's order; noise is an arm's too.
+    let plan = docking(&["arms=['untaught-adam', 'taught-adam']", "arm.taught-adam.robot.noise.sonar=0"]);
+    assert_eq!(plan.arms.iter().map(|a| a.name.as_str()).collect::<Vec<_>>(), ["taught-adam", "untaught-adam"]);
+    assert_eq!((plan.arms[0].noise.sonar, plan.arms[1].noise.sonar), (0.0, 0.10));
+    let plan = docking(&["skill.dock.inputs=['sonar', 'sonar-far', 'bumpers', 'compass']", "seeds=[4, 2]"]);
+    assert_eq!(plan.arms[0].skills[0].inputs[1..], [Input::SonarFar, Input::Bumpers, Input::Compass]);
+    assert_eq!(plan.seeds, [2, 4]);
+    assert_eq!(docking(&["seeds=5"]).seeds, [5]);
+    assert_eq!(docking(&["seeds=5..7"]).seeds, [5, 6]);
+}
+
+#[test]
+fn seeds_are_ranges_and_lists() {
+    let all = |text: &str| parse_seeds(text).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(all("0..7"), [0, 1, 2, 3, 4, 5, 6]);
+    assert_eq!(all("0..=6"), all("0..7"));
+    assert_eq!(all("5"), [5]);
+    assert_eq!(all("1,2,5..9"), [1, 2, 5, 6, 7, 8]);
+    assert_eq!(all(" 9, 1 .. 3 "), [1, 2, 9]);
+    assert_eq!(all("4294967295"), [u32::MAX]);
+    assert_eq!(all("4294967294..=4294967295"), [u32::MAX - 1, u32::MAX]);
+    assert_eq!(all("0..1048576").len(), 1 << 20);
+    for (text, message, hint) in [
+        ("", "`` is not a seed", "0..7"),
+        ("a", "`a` is not a seed", "0..7"),
+        ("-1", "`-1` is not a seed", "0 to 4294967295"),
+        ("+1", "`+1` is not a seed", "0 to 4294967295"),
+        ("1.5", "`1.5` is not a seed", "0..7"),
+        ("4294967296", "is not a seed", "0 to 4294967295"),
+        ("0..", "`` is not a seed", "0..7"),
+        ("1,,2", "`` is not a seed", "0..7"),
+        ("7..0", "`7..0` holds no seed", "after the start"),
+        ("3..3", "`3..3` holds no seed", "0..7 for 0 to 6"),
+        ("1,1", "the seed 1 is there twice", "once"),
+        ("0..5,3", "the seed 3 is there twice", "once"),
+        ("0..4294967295", "too many seeds", "1048576"),
+        ("0..1048576,1048576", "too many seeds", "1048576"),
+    ] {
+        let error = parse_seeds(text).expect_err(text);
+        println!("{error}\n");
+        assert!(error.message().contains(message) && error.hint().contains(hint), "{text}: {error}");
+        assert_eq!(error.place(), &Place::Argument(format!("--seeds {text}")));
+    }
+    let overrides = Overrides { seeds: Some("7..1".to_owned()), ..Overrides::default() };
+    let error = load(&shipped("docking.toml"), &overrides).expect_err("a reversed range");
+    assert_eq!(error.place(), &Place::Argument("--seeds 7..1".to_owned()));
+}
+
+#[test]
+fn mistakes_on_the_command_line_name_it() {
+    for (set, message, hint) in [
+        ("learning.rate", "no `=`", "--set key=value"),
+        ("=3", "`` is not the name of a key", "--set key=value"),
+        ("learning..rate=3", "`learning..rate` is not the name", "--set key=value"),
+        ("learning.rate=", "`` is not a value", "number"),
+        ("arms=[taught-adam]", "`[taught-adam]` is not a value", "quotes"),
+        ("title=two words", "`two words` is not a value", "quotes"),
+        ("learning.rte=0.1", "unknown key `learning.rte`", "did you mean `rate`"),
+        ("lerning.rate=0.1", "unknown key `lerning`", "did you mean `learning`"),
+        ("learning.rate=fast", "must be a number, not a string", "more than 0 and at most 10"),
+        ("learning.rate=0", "out of range", "more than 0"),
+        ("learning.rate=1e-60", "is 1e-60, which is out of range", "more than 0"),
+        ("learning.rate=nan", "`nan` is not a number", "finite"),
+        ("learning.rate=-inf", "`-inf` is not a number", "finite"),
+        ("learning.gamma=1.5", "out of range", "between 0 and 1"),
+        ("learning.beta1=0.99999999999", "out of range", "less than 1"),
+        ("learning.hidden=33", "out of range", "between 1 and 32"),
+        ("learning.hidden=1.5", "must be a whole number, not a decimal number", "between 1 and 32"),
+        ("learning.mask_blocked=1", "must be true or false", "without quotes"),
+        ("learning.optimiser=adm", "`adm` is not one of the possible values", "did you mean `adam`"),
+        ("arm.taught-adam.learning.momentum=0.9", "has no effect", "optimiser = \"sgd\""),
+        ("arm.taught-sgd.learning.beta1=0.5", "has no effect", "optimiser = \"adam\""),
+        ("learning=3", "`learning` must be a table", "[header]"),
+        ("skill.dock.learning=3", "`skill.dock.learning` must be a table", "[header]"),
+        ("skill.dok.trials=3", "there is no skill `dok`", "did you mean `dock`"),
+        ("skill.dock.trials=-3", "out of range", "between 1 and 100000"),
+        ("skill.dock.trails=3", "unknown key `skill.dock.trails`", "did you mean `trials`"),
+        ("skill.dock.max_steps=256", "out of range", "between 1 and 255"),
+        ("skill.dock.lessons=257", "is 257, more than there are", "raise `teacher.bank`"),
+        ("skill.dock.tests=light-aria", "no region `light-aria`", "did you mean `light-area`"),
+        ("skill.dock.starts=room:D", "no region `room:D`", "`room:A`"),
+        ("skill.dock.starts={anywhere=0.5}", "sum to 0.5", "sum to 1"),
+        ("skill.dock.starts={anywhere=-1, light-area=2}", "out of range", "more than 0"),
+        ("skill.dock.starts={}", "sum to 0", "sum to 1"),
+        ("skill.dock.starts=[1]", "must be a region or a table of shares", "light-area"),
+        ("skill.dock.inputs=['sonar(0)']", "`0` cannot be the scale", "between 1 and 1000"),
+        ("skill.dock.inputs=['sonar(nan)']", "`nan` cannot be the scale", "sonar(60)"),
+        ("skill.dock.inputs=['lihgt']", "`lihgt` is not one of the inputs", "did you mean `light`"),
+        ("skill.dock.inputs=['light', 'light']", "`light` is there twice", "once"),
+        ("skill.dock.inputs=[]", "is empty", "at least one"),
+        ("skill.dock.inputs=['sonar', 'sonar-far', 'light']", "72 values, more than 64", "24 each"),
+        ("skill.dock.children=['turn+15', 'follow']", "`follow` is not an action", "later version"),
+        ("skill.dock.children=['turn15']", "`turn15` is not an action", "did you mean `turn+15`"),
+        ("skill.dock.children=['turn+15', 'turn+15']", "there twice", "once"),
+        ("skill.dock.reward={dock=1}", "`dock` is not one of the events", "`docked`"),
+        ("skill.dock.reward.docked=true", "must be a number", "between"),
+        ("skill.dock.ends=['door']", "`door` is not one of the events", "`passed-door`"),
+        ("robot.noise.sonar=0.6", "out of range", "between 0 and 0.5"),
+        ("robot.noise.kind=flat", "`flat` is not one", "`gaussian`"),
+        ("robot.nose.kind=flat", "unknown key `robot.nose`", "did you mean `noise`"),
+        ("evaluate.at=[0, 50, 50]", "`evaluate.at[2]` does not rise", "ascending"),
+        ("evaluate.at=5", "must be a list", "[ ..., ... ]"),
+        ("evaluate.episodes=0", "out of range", "between 1"),
+        ("teacher.backward_cost=-1", "out of range", "between 0"),
+        ("seed=-1", "out of range", "between 0 and 4294967295"),
+        ("seeds=[1, 1]", "the seed 1 is there twice", "once"),
+        ("seeds=[]", "there are no seeds", "0..7"),
+        ("seeds=true", "must be text or a list", "0..7"),
+        ("arms=['tought-adam']", "`tought-adam` is not one of the arms", "did you mean `taught-adam`"),
+        ("arms=[]", "no arm is chosen", "`taught-adam`"),
+        ("arms=['taught-adam', 'taught-adam']", "there twice", "once"),
+        ("arm.tough-adam.learning.rate=1", "there is no arm `tough-adam`", "did you mean `taught-adam`"),
+        ("arm.taught-adam.evaluate.episodes=1", "`evaluate` is the same for all arms", "an arm may change"),
+        ("arm.taught-adam.lerning.rate=1", "unknown key `arm.taught-adam.lerning`", "did you mean `learning`"),
+        ("arm.taught-adam.skill.dok.trials=1", "there is no skill `dok`", "did you mean `dock`"),
+        ("world=worlds/ofice.toml", "cannot read the world file: there is no such file", "looked for at"),
+        ("name=a/b", "`a/b` cannot be a name", "letters"),
+        ("title=3", "`title` must be a string", "quotes"),
+        ("nonsense=3", "unknown key `nonsense`", "`learning`"),
+    ] {
+        let error = refused(&[set]);
+        println!("{error}\n");
+        assert!(error.message().contains(message) && error.hint().contains(hint), "{set}\n{error}");
+        assert_eq!(error.place(), &Place::Argument(format!("--set {set}")), "{error}");
+    }
+}
+
+const FILE: &str = "\
+title = 'test'
+world = 'world.toml'
+[learning]
+rate = 0.01
+[skill.dock]
+inputs = ['sonar', 'bumpers']
+reward = { docked = 100 }
+starts = 'anywhere'
+ends = ['docked']
+[arm.one]
+[arm.two]
+learning.gamma = 0.5
+";
+const WORLD: &str = "\
+size = [200, 200]
+rooms = [{ name = 'A', box = [0, 0, 200, 200] }]
+charger = { box = [0, 0, 24, 24] }
+light = { at = [12, 12], range = 100 }
+places = { L1 = [100, 100, 0] }
+regions = [{ name = 'sliver', box = [0, 50, 10, 200] }]
+";
+
+fn attempt(config: &str, world: &str) -> (Result<Plan, ConfigError>, PathBuf) {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("world.toml"), world).expect("a file");
+    let path = folder.path().join("config.toml");
+    std::fs::write(&path, config).expect("a file");
+    (load(&path, &Overrides::default()), path)
+}
+
+#[test]
+fn mistakes_in_files_have_their_line() {
+    attempt(FILE, WORLD).0.unwrap_or_else(|error| panic!("{error}"));
+    // What is replaced, by what, the line of the complaint (0: the file), words of its message, words of its hint.
+    for (from, to, line, message, hint) in [
+        ("rate = 0.01", "rte = 0.01", 4, "unknown key `learning.rte`", "did you mean `rate`"),
+        ("rate = 0.01", "rate = '0.01'", 4, "must be a number, not a string", "more than 0"),
+        ("rate = 0.01", "rate = nan", 4, "`nan` is not a number", "finite"),
+        ("rate = 0.01", "rate = -0.01", 4, "out of range", "more than 0"),
+        ("rate = 0.01", "rate = 0.01\nrate = 0.02", 5, "duplicate key", "toml.io"),
+        ("rate = 0.01", "rate =", 4, "not valid TOML", "toml.io"),
+        ("rate = 0.01", "optimiser = 'sgd'", 4, "sgd has no default rate", "rate = 0.15"),
+        ("rate = 0.01", "momentum = 0.9", 4, "`learning.momentum` has no effect", "sgd"),
+        ("learning.gamma = 0.5", "learning.gama = 0.5", 12, "unknown key `learning.gama`", "did you mean `gamma`"),
+        ("learning.gamma = 0.5", "learning.gamma = 2", 12, "out of range", "between 0 and 1"),
+        ("learning.gamma = 0.5", "seeds = '0..2'", 12, "`seeds` is the same for all arms", "an arm may change"),
+        ("learning.gamma = 0.5", "skill.dok.trials = 5", 12, "no skill `dok`", "did you mean `dock`"),
+        ("learning.gamma = 0.5", "skill.dock.starts = { nowhere = 1 }", 12, "no region `nowhere`", "`anywhere`"),
+        ("[arm.two]", "[arm.Two]", 11, "`Two` cannot be the name of an arm", "small letters"),
+        ("[arm.two]", "[arm.'two words']", 11, "`two words` cannot be the name of an arm", "small letters"),
+        ("[skill.dock]", "[skill.'my dock']", 5, "`my dock` cannot be the name of a skill", "letters"),
+        ("inputs = ['sonar', 'bumpers']\n", "", 5, "`skill.dock.inputs` is missing", "add `inputs = "),
+        ("inputs =", "input =", 5, "`skill.dock.inputs` is missing", "did you mean `inputs`"),
+        ("reward = { docked = 100 }\n", "", 5, "`skill.dock.reward` is missing", "add `reward = "),
+        ("reward = { docked = 100 }", "reward = {}", 7, "nothing to learn", "docked = 100"),
+        ("{ docked = 100 }", "{ passed-door = 100 }", 7, "cannot happen: the world has no doors", "add doors"),
+        ("starts = 'anywhere'", "starts = 'sliver'", 8, "fits nowhere in the region `sliver`", "14 inches"),
+        ("world = 'world.toml'\n", "", 0, "`world` is missing", "worlds/office.toml"),
+        ("world = 'world.toml'", "world = 'none.toml'", 2, "cannot read the world file", "looked for at"),
+        ("world = 'world.toml'", "world = '.'", 2, "cannot read the world file", "looked for at"),
+        ("world = 'world.toml'", "world = 5", 2, "must be a string", "quotes"),
+        ("title = 'test'", "seeds = '7..0'", 1, "holds no seed", "after the start"),
+        ("title = 'test'", "arms = ['three']", 1, "`three` is not one of the arms", "`one`, `two`"),
+        ("title = 'test'", "size = 3", 1, "unknown key `size`", "`world`"),
+        ("title = 'test'", "arm = 3", 10, "not valid TOML", "toml.io"),
+    ] {
+        assert!(FILE.contains(from), "{from}");
+        let (result, path) = attempt(&FILE.replacen(from, to, 1), WORLD);
+        let error = result.expect_err(to);
+        println!("{error}\n");
+        match error.place() {
+            Place::Line { path: at, line: found, .. } => assert_eq!((at, *found), (&path, line), "{to}\n{error}"),
+            Place::File(at) => assert_eq!((at, 0), (&path, line), "{to}\n{error}"),
+            Place::Argument(_) => panic!("{to}\n{error}"),
+        }
+        assert!(error.message().contains(message) && error.hint().contains(hint), "{to}\n{error}");
+    }
+}
+
+#[test]
+fn mistakes_in_the_world_point_into_the_world_file() {
+    let (result, path) = attempt(FILE, &WORLD.replace("[100, 100, 0]", "[100, 3, 0]"));
+    let error = result.expect_err("a place in a wall");
+    let Place::Line { path: at, line, text, .. } = error.place() else { panic!("{error}") };
+    assert_eq!((at, *line), (&path.with_file_name("world.toml"), 5));
+    assert!(text.starts_with("places"));
+    for (from, to, message) in [
+        ("charger = { box = [0, 0, 24, 24] }\n", "", "`docked` cannot happen: the world has no charger"),
+        ("light = { at = [12, 12], range = 100 }\n", "", "the world has no light to see"),
+    ] {
+        let config = FILE.replace("'bumpers'", "'light'");
+        let error = attempt(&config, &WORLD.replace(from, to)).0.expect_err(message);
+        println!("{error}\n");
+        assert_eq!(error.message(), message);
+    }
+}
+
+#[test]
+fn files_that_cannot_be_read_are_named() {
+    let error = load(Path::new("no/such.toml"), &Overrides::default()).expect_err("no file");
+    println!("{error}\n");
+    assert_eq!(error.place(), &Place::File(PathBuf::from("no/such.toml")));
+    assert!(error.message().contains("there is no such file"));
+    let folder = tempfile::tempdir().expect("a folder");
+    let error = load(folder.path(), &Overrides::default()).expect_err("a folder");
+    println!("{error}\n");
+    let path = folder.path().join("binary.toml");
+    std::fs::write(&path, [0xff, 0xfe, 0x00]).expect("a file");
+    let error = load(&path, &Overrides::default()).expect_err("not text");
+    println!("{error}\n");
+    assert!(error.hint().contains("UTF-8"));
+    for text in [
+        "",
+        "title = 'x'",
+        "= 3",
+        "[skill",
+        "\u{0}",
+        "a = \"\u{1F916}",
+        "skill = 3\nworld = 'world.toml'",
+        "[skill]\nworld = 'w'",
+    ] {
+        let (result, _) = attempt(text, WORLD);
+        println!("{}\n", result.expect_err(text));
+    }
+    for (arms, message) in [("[arm]\n", "there are no arms"), ("", "")] {
+        let (result, _) = attempt(&format!("{}{arms}", &FILE[..FILE.find("[arm.one]").expect("arms")]), WORLD);
+        match result {
+            Ok(plan) => assert_eq!((plan.arms[0].name.as_str(), message), ("base", "")),
+            Err(error) => assert_eq!(error.message(), message, "{error}"),
+        }
+    }
+    let (result, _) = attempt("world = 'world.toml'\n", WORLD);
+    let error = result.expect_err("no skill");
+    println!("{error}\n");
+    assert_eq!(error.message(), "the config has no skill");
+}

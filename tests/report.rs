@@ -1,0 +1,317 @@
+//! Reports: statistics against NumPy and rliable, figures with ink in them, a page that stands alone.
+
+use glam::Vec2;
+use skilltree::record::places::write_places;
+use skilltree::record::tables::write_evaluations;
+use skilltree::record::{EvaluationRow, Names, PlaceReading, Provenance, RecordError, RunFolder};
+use skilltree::report::resample::Resampler;
+use skilltree::report::statistics::{
+    bootstrap, interquartile_mean, mean, paired_difference, quantile, share_below, sorted, wilson,
+};
+use skilltree::report::summary::summarise;
+use skilltree::report::{ReportError, curves, raster, write};
+use skilltree::world::{Pose, World, load};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// NumPy's `RandomState(0).beta(2, 2, (7, 3))`, row by row.
+const BETA: [f64; 21] = [
+    0.696572224336582,
+    0.8862478052104321,
+    0.40532374586369124,
+    0.6095451641948114,
+    0.5193828417443039,
+    0.7580550106047955,
+    0.02419695195152882,
+    0.9424713912979759,
+    0.5088501031542566,
+    0.7970241721749655,
+    0.504113066176043,
+    0.6042073897127618,
+    0.48421134180108677,
+    0.1903544936229557,
+    0.25455619985557004,
+    0.4166363691330901,
+    0.43989826695238865,
+    0.743318504105048,
+    0.12158138147003826,
+    0.6032831230942534,
+    0.7068711326684632,
+];
+
+fn first_column() -> Vec<f64> {
+    BETA.iter().step_by(3).copied().collect()
+}
+
+fn close(a: f64, b: f64, tolerance: f64) {
+    assert!((a - b).abs() <= tolerance, "{a} is not {b}");
+}
+
+/// Golden values: rliable 1.2.0 and NumPy on the same numbers.
+#[test]
+fn statistics_match_rliable_and_numpy() {
+    close(mean(&BETA), 0.5341286037678591, 1e-12);
+    close(interquartile_mean(&sorted(&BETA)), 0.5539610020880037, 1e-12);
+    close(interquartile_mean(&sorted(&first_column())), 0.4657092961871217, 1e-12);
+    close(quantile(&[1.0, 2.0, 4.0, 8.0], 0.4), 2.4, 1e-12);
+    for (successes, trials, low, high) in [
+        (0, 10, 0.0, 0.2775327998628892),
+        (81, 263, 0.2552885198782742, 0.36620957698280004),
+        (15, 148, 0.06238639953073628, 0.16048724172330803),
+    ] {
+        let interval = wilson(successes, trials);
+        close(interval.low, low, 1e-12);
+        close(interval.high, high, 1e-12);
+    }
+    assert!(mean(&[]).is_nan() && wilson(0, 0).low.is_nan() && bootstrap(&[], mean, 10).low.is_nan());
+    close(share_below(&[0.4, 0.5, 0.6, 0.1], 0.5), 0.5, 0.0);
+}
+
+/// NumPy on the first column. The mean: a million resamples. The interquartile mean of 7 values takes few values, so the
+/// ends are those whose exact distribution function (all 1,716 resamples, weighted) is within three Monte-Carlo errors.
+#[test]
+fn bootstrap_intervals_match_numpy() {
+    let column = first_column();
+    let interval = bootstrap(&column, mean, 50_000);
+    close(interval.low, 0.24587364, 0.003);
+    close(interval.high, 0.63973337, 0.003);
+    let interval = bootstrap(&column, interquartile_mean, 50_000);
+    assert!((0.2006..=0.2142).contains(&interval.low), "{interval:?}");
+    assert!((0.6741..=0.6792).contains(&interval.high), "{interval:?}");
+    assert_eq!(bootstrap(&column, mean, 1000), bootstrap(&column, mean, 1000));
+    let (difference, interval) = paired_difference(&column, &column, 100);
+    assert_eq!((difference, interval.low, interval.high), (0.0, 0.0, 0.0));
+}
+
+#[test]
+fn resampled_indices_are_uniform() {
+    let (mut draws, mut counts) = (Resampler::new(7), [0_u32; 7]);
+    for _ in 0..70_000 {
+        counts[draws.index(7)] += 1;
+    }
+    let squares: f64 = counts.iter().map(|&count| (f64::from(count) - 10_000.0).powi(2) / 10_000.0).sum();
+    assert!(squares < 22.5, "chi-squared {squares} with 6 degrees of freedom: {counts:?}");
+    assert_eq!(Resampler::new(7).index(0), 0);
+}
+
+/// Normal data, n = 20: simulated coverage of the nominal 95 percent interval is 93 +- 0.7 percent for both.
+#[test]
+fn bootstrap_intervals_cover() {
+    let mut draws = Resampler::new(20);
+    let mut uniform = || (draws.index(1 << 30) as f64 + 0.5) / f64::from(1 << 30);
+    for statistic in [mean, |values: &[f64]| interquartile_mean(values)] {
+        let covered = (0..1000).filter(|_| {
+            let normal: Vec<f64> = (0..20).map(|_| (0..12).map(|_| uniform()).sum::<f64>() - 6.0).collect();
+            let interval = bootstrap(&normal, statistic, 1000);
+            interval.low <= 0.0 && 0.0 <= interval.high
+        });
+        let covered = covered.count();
+        assert!((905..=965).contains(&covered), "{covered} of 1000");
+    }
+}
+
+const OFFICE: &str = include_str!("../configs/worlds/office.toml");
+const ARMS: [&str; 5] = ["hierarchical", "monolithic", "no-persistence", "no-teaching", "fixed-switch"];
+const SKILLS: [&str; 2] = ["dock", "recharge"];
+const MOMENTS: [u32; 13] = [0, 10, 25, 50, 75, 100, 125, 150, 175, 200, 225, 250, 300];
+
+/// Five arms that learn at different speeds, tested 13 times from three rooms; the planner last.
+fn synthetic(seeds: u32) -> (Names, Vec<EvaluationRow>) {
+    let words = |list: &[&str]| list.iter().map(|word| word.to_string()).collect::<Vec<_>>();
+    let mut names = Names { arms: words(&ARMS), skills: words(&SKILLS), rooms: words(&["A", "B", "C"]) };
+    let mut draws = Resampler::new(1);
+    let mut rows = Vec::new();
+    for (arm, skill, seed) in (0..5).flat_map(|a| (0..2).flat_map(move |k| (0..seeds).map(move |s| (a, k, s)))) {
+        let speed = [30.0, 110.0, 45.0, 90.0, 38.0][arm as usize] * (0.6 + draws.index(100) as f64 / 125.0);
+        for (trials, room) in MOMENTS.iter().flat_map(|&trials| (0..3).map(move |room| (trials, room))) {
+            let skilled = 0.97 * (1.0 - (-f64::from(trials) / speed).exp());
+            let successes = (0..40).filter(|_| (draws.index(1000) as f64) < 1000.0 * skilled).count() as u32;
+            let steps = 40 * 200 - successes * (200 - 34 - 5 * room);
+            rows.push(EvaluationRow {
+                arm,
+                point: 0,
+                seed,
+                skill,
+                trials,
+                actions: 400 + trials * (30 + 60 * arm) + seed,
+                room,
+                episodes: 40,
+                successes,
+                steps,
+                reward: f64::from(successes) * 100.0,
+                collisions: steps / 25,
+            });
+        }
+    }
+    names.arms.push("planner".into());
+    for (skill, room) in [(0, 0), (1, 0), (1, 1), (1, 2)] {
+        let (arm, point, seed, trials, actions, collisions) = (5, 0, 0, 0, 0, 0);
+        let (episodes, successes, steps, reward) = (1000, 998, 27_500 + room * 900, 99_800.0);
+        #[rustfmt::skip]
+        rows.push(EvaluationRow {
+            arm, point, seed, skill, trials, actions, room, episodes, successes, steps, reward, collisions,
+        });
+    }
+    (names, rows)
+}
+
+/// Sonar by plain ray casting; light in a cone ahead.
+fn readings(world: &World) -> Vec<PlaceReading> {
+    let ray = |from: Vec2, degrees: f32| {
+        let direction = Vec2::from_angle(degrees.to_radians());
+        let hits = world.segments.iter().filter_map(|wall| {
+            let (along, gap) = (wall.b - wall.a, wall.a - from);
+            let cross = direction.perp_dot(along);
+            let (t, u) = (gap.perp_dot(along) / cross, gap.perp_dot(direction) / cross);
+            (t > 0.0 && (0.0..=1.0).contains(&u)).then_some(t)
+        });
+        hits.fold(127.0, f32::min) as u32
+    };
+    let reading = |(name, pose): &(String, Pose)| PlaceReading {
+        place: name.clone(),
+        x: pose.x,
+        y: pose.y,
+        heading: pose.heading,
+        sonar: std::array::from_fn(|i| ray(Vec2::new(pose.x, pose.y), pose.heading + 15.0 * i as f32)),
+        light: std::array::from_fn(|i| u8::from(!(3..=21).contains(&i))),
+    };
+    world.places.iter().map(reading).collect()
+}
+
+fn run_folder(dir: &Path, seeds: u32) {
+    let (names, rows) = synthetic(seeds);
+    let world = load::parse(OFFICE, Path::new("world.toml")).unwrap();
+    let config = "title = \"Synthetic: five <arms> & a planner\"\nseeds = \"0..31\"\n";
+    let provenance = Provenance {
+        version: "0.1.0".into(),
+        commit: Some("0123456789ab".into()),
+        backend: "cpu".into(),
+        seeds: (0..seeds).collect(),
+        started: Some("2026-11-22T08:00:00Z".into()),
+        ..Provenance::default()
+    };
+    let files = [
+        ("evaluations.parquet".to_owned(), write_evaluations(&rows, &names).unwrap()),
+        ("places.json".to_owned(), write_places(&readings(&world)).unwrap()),
+    ];
+    RunFolder::open(dir, config, OFFICE).unwrap().finish(files, provenance).unwrap();
+}
+
+/// Lies in the build folder, so that one can look at it after the test.
+fn scratch(name: &str) -> PathBuf {
+    let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = fs::remove_dir_all(&dir);
+    dir
+}
+
+#[test]
+fn a_report_is_complete_and_the_same_every_time() {
+    let dir = scratch("report-32");
+    run_folder(&dir, 32);
+    let written = write(&dir).unwrap();
+    let names: Vec<_> = written.iter().map(|path| path.strip_prefix(&dir).unwrap().to_str().unwrap()).collect();
+    for name in ["learning-dock", "steps-dock", "actions-recharge", "world", "sonar-L1", "light-L2"] {
+        assert!(names.contains(&format!("figures/{name}.svg").as_str()), "{names:?}");
+        assert!(names.contains(&format!("figures/{name}.png").as_str()), "{names:?}");
+    }
+    assert_eq!((names.len(), names.last()), (2 * (2 * 3 + 1 + 3 * 2) + 1, Some(&"report.html")));
+    let bytes: Vec<_> = written.iter().map(|path| fs::read(path).unwrap()).collect();
+    assert_eq!(write(&dir).unwrap(), written);
+    for (path, bytes) in written.iter().zip(&bytes) {
+        assert!(fs::read(path).unwrap() == *bytes, "{}", path.display());
+        if path.extension().is_some_and(|ending| ending == "png") {
+            let drawn = resvg::tiny_skia::Pixmap::decode_png(bytes).unwrap();
+            let ink = drawn.pixels().iter().filter(|pixel| (pixel.red(), pixel.green()) != (255, 255)).count();
+            assert!(ink > 5_000 && 2 * ink < drawn.pixels().len(), "{}: {ink} dark pixels", path.display());
+        }
+    }
+}
+
+#[test]
+fn the_page_stands_alone_and_says_what_it_must() {
+    let dir = scratch("report-7");
+    run_folder(&dir, 7);
+    write(&dir).unwrap();
+    let page = fs::read_to_string(dir.join("report.html")).unwrap();
+    for fetch in ["http:", "https:", "src=", "href=", "@import", "url("] {
+        assert!(!page.contains(fetch), "{fetch}");
+    }
+    for said in [
+        "Synthetic: five &lt;arms&gt; &amp; a planner",
+        "Only 7 seeds",
+        "0 to 6 (7 seeds)",
+        "hierarchical minus monolithic",
+        "commit 0123456789ab",
+        "n = 7 seeds",
+        "percentile bootstrap",
+        "planner (bound)",
+    ] {
+        assert!(page.contains(said), "{said}");
+    }
+    assert!(!page.contains("NaN") && !page.contains("<arms>"));
+}
+
+#[test]
+fn seeds_that_are_missing_are_said_not_averaged_over() {
+    let (names, mut rows) = synthetic(4);
+    rows.retain(|row| !(row.arm == 0 && row.skill == 0 && row.trials == 150 && row.seed == 2));
+    rows.retain(|row| !(row.arm == 1 && row.seed == 3));
+    let summary = summarise(&names, &rows, &[0, 1, 2, 3]);
+    let dock = &summary.skills[0];
+    assert_eq!((dock.name.as_str(), dock.series.len()), ("dock", 5));
+    assert!(dock.series[0].cells.iter().all(|cell| cell.trials != 150 && cell.scores.len() == 4));
+    assert_eq!(dock.series[1].last().scores.len(), 3);
+    assert_eq!(dock.planner.unwrap().episodes, 1000);
+    assert_eq!(summary.skills[1].planner.unwrap().episodes, 3000);
+    assert!(
+        summary.warnings.iter().any(|text| text.contains("after 150 trials, where 3 of 4")),
+        "{:?}",
+        summary.warnings
+    );
+    assert!(summary.warnings.iter().any(|text| text.contains("1 of 4 seeds have no tests")), "{:?}", summary.warnings);
+    let by_hand: u32 = rows
+        .iter()
+        .filter(|row| row.arm == 4 && row.skill == 1 && row.trials == 300 && row.seed == 2)
+        .map(|row| row.successes)
+        .sum();
+    close(summary.skills[1].series[4].last().scores[2].success(), f64::from(by_hand) / 120.0, 1e-15);
+}
+
+#[test]
+fn sweep_points_are_series_of_their_own() {
+    let (names, mut rows) = synthetic(2);
+    rows.retain(|row| row.arm == 0);
+    let mut second = rows.clone();
+    second.iter_mut().for_each(|row| row.point = 1);
+    rows.extend(second);
+    let labels: Vec<_> =
+        summarise(&names, &rows, &[0, 1]).skills[0].series.iter().map(|series| series.label.clone()).collect();
+    assert_eq!(labels, ["hierarchical, point 0", "hierarchical, point 1"]);
+}
+
+#[test]
+fn runs_that_cannot_be_reported_say_why() {
+    let dir = scratch("report-wrong");
+    let missing = write(&dir).unwrap_err().to_string();
+    assert!(missing.contains("report-wrong"), "{missing}");
+    drop(RunFolder::open(&dir, "", OFFICE).unwrap());
+    assert!(matches!(write(&dir), Err(ReportError::Record(RecordError::Unfinished { .. }))));
+    let run = RunFolder::open(&dir, "", OFFICE).unwrap();
+    run.finish([], Provenance::default()).unwrap();
+    write(&dir).unwrap();
+    assert!(fs::read_to_string(dir.join("report.html")).unwrap().contains("The run holds no tests"));
+    let dir = scratch("report-worldless");
+    RunFolder::open(&dir, "", "size = 3\n").unwrap().finish([], Provenance::default()).unwrap();
+    let refused = write(&dir).unwrap_err().to_string();
+    assert!(refused.contains("world.toml") && refused.contains("size"), "{refused}");
+    assert!(raster::png("not a drawing").is_err());
+}
+
+#[test]
+fn labels_keep_their_distance() {
+    let placed = curves::spread(&[10.0, 11.0, 12.0, 80.0, 99.0, 100.0], 10.0, (0.0, 100.0));
+    assert!(placed.windows(2).all(|pair| pair[1] - pair[0] >= 10.0 - 1e-9), "{placed:?}");
+    assert!(placed[0] >= 0.0 && placed[5] <= 100.0, "{placed:?}");
+    assert_eq!(curves::spread(&[5.0, 50.0], 10.0, (0.0, 100.0)), [5.0, 50.0]);
+    assert!(curves::spread(&[], 10.0, (0.0, 100.0)).is_empty());
+}
