@@ -57,7 +57,8 @@ fn plain(checked: &Checked, kernel: &Kernel) -> Result<Vec<u32>, String> {
     let options = spv::Options {
         lang_version: (1, 3),
         flags: spv::WriterFlags::empty(),
-        fake_missing_bindings: false,
+        // Without a map, naga keeps the numbers in the text.
+        fake_missing_bindings: true,
         bounds_check_policies: BoundsCheckPolicies {
             index: BoundsCheckPolicy::Restrict,
             buffer: BoundsCheckPolicy::Restrict,
