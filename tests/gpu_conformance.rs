@@ -9,7 +9,7 @@ use skilltree::backend::gpu::conformance::{ask, compare, questions};
 use skilltree::backend::gpu::device::Device;
 use skilltree::backend::gpu::{GpuBackend, GpuOptions, adapter};
 use skilltree::backend::{Backend, BackendError, Cohort, Stop, Test};
-use skilltree::config::load::{Overrides, load};
+use skilltree::config::{Overrides, load};
 use skilltree::config::plan::Plan;
 use skilltree::experiment::group::{Group, groups};
 use skilltree::learner::layout::{PHASE_DONE, Robot};
