@@ -131,7 +131,9 @@ fn lines(entry: &Entry) -> Vec<(&'static str, String)> {
     };
     let used = match (entry.exact, entry.software) {
         (true, false) => "--backend auto and --backend gpu",
-        (_, true) => "--backend gpu where there is no card, or --adapter NAME; never by auto, for it is slower than cpu",
+        (_, true) => {
+            "--backend gpu where there is no card, or --adapter NAME; never by auto, for it is slower than cpu"
+        }
         (false, false) => "--backend gpu only: its results are close to the CPU's, but not the same",
     };
     let loops = match entry.loop_budget {

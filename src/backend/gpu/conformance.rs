@@ -48,7 +48,9 @@ pub fn examine(device: &Device) -> Result<Verdict, BackendError> {
     }
     if !device.passthrough {
         verdict.exact = false;
-        verdict.reason.get_or_insert("the backend does not take SPIR-V, so nothing fixes the order of operations".into());
+        verdict
+            .reason
+            .get_or_insert("the backend does not take SPIR-V, so nothing fixes the order of operations".into());
     }
     Ok(verdict)
 }
@@ -67,7 +69,7 @@ fn question(number: u32) -> Question {
     let scaled = |word: u32, low: u32, span: u32| (word & 0x007f_ffff) | (low + (word >> 23) % span) << 23;
     let (a, b) = (spread(v[0], 4.0), spread(v[1], 4.0));
     // A third operand that nearly cancels the product shows a fused product best.
-    let c = if number % 4 == 0 { -(a * b) } else { spread(v[2], 4.0) };
+    let c = if number.is_multiple_of(4) { -(a * b) } else { spread(v[2], 4.0) };
     let angle = (w[2] >> 8) as f32 * (720.0 / 16_777_216.0);
     let mut question = [0; QUESTION_WORDS];
     question[0] = spread(w[0], 70.0).to_bits();

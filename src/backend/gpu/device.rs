@@ -49,8 +49,7 @@ impl Device {
             max_buffer_size: offered.max_buffer_size,
             ..wgpu::Limits::default()
         };
-        let required_features =
-            if passthrough { wgpu::Features::PASSTHROUGH_SHADERS } else { wgpu::Features::empty() };
+        let required_features = if passthrough { wgpu::Features::PASSTHROUGH_SHADERS } else { wgpu::Features::empty() };
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("skilltree"),
             required_features,
@@ -82,7 +81,12 @@ impl Device {
     ///
     /// # Errors
     /// Where the driver has no memory for it.
-    pub fn buffer(&self, kernel: &'static str, bytes: u64, usage: wgpu::BufferUsages) -> Result<wgpu::Buffer, BackendError> {
+    pub fn buffer(
+        &self,
+        kernel: &'static str,
+        bytes: u64,
+        usage: wgpu::BufferUsages,
+    ) -> Result<wgpu::Buffer, BackendError> {
         let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(kernel),
             size: bytes.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT).max(16),

@@ -24,10 +24,9 @@ impl Pipeline {
         let checked = check(&wgsl).map_err(failed)?;
         let entries = entries(&checked.module).map_err(failed)?;
         let scope = device.device.push_error_scope(wgpu::ErrorFilter::Validation);
-        let layout = device.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some(kernel.name),
-            entries: &entries,
-        });
+        let layout = device
+            .device
+            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(kernel.name), entries: &entries });
         let pipeline_layout = device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some(kernel.name),
             bind_group_layouts: &[Some(&layout)],
@@ -108,9 +107,9 @@ fn entries(module: &naga::Module) -> Result<Vec<wgpu::BindGroupLayoutEntry>, Str
         let Some(binding) = &global.binding else { continue };
         let ty = match global.space {
             naga::AddressSpace::Uniform => wgpu::BufferBindingType::Uniform,
-            naga::AddressSpace::Storage { access } => wgpu::BufferBindingType::Storage {
-                read_only: !access.contains(naga::StorageAccess::STORE),
-            },
+            naga::AddressSpace::Storage { access } => {
+                wgpu::BufferBindingType::Storage { read_only: !access.contains(naga::StorageAccess::STORE) }
+            }
             space => return Err(format!("a binding in {space:?} is not a buffer")),
         };
         if binding.group != 0 {

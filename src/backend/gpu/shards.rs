@@ -126,7 +126,10 @@ pub fn upload(device: &Device, cohort: &Cohort) -> Result<Vec<Shard>, BackendErr
     let too_large = |message: String| BackendError::TooLarge { learners, message };
     let limits = device.device.limits();
     let largest = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
-    for (bytes, what) in [(size_of_val(&cohort.shared.bank[..]), "the taught lessons"), (size_of_val(&cohort.shared.atlas[..]), "the atlas")] {
+    for (bytes, what) in [
+        (size_of_val(&cohort.shared.bank[..]), "the taught lessons"),
+        (size_of_val(&cohort.shared.atlas[..]), "the atlas"),
+    ] {
         if bytes as u64 > largest {
             return Err(too_large(format!("{what} take {bytes} bytes, a buffer holds {largest}")));
         }

@@ -103,10 +103,8 @@ pub const EVALUATE: Kernel = Kernel {
 };
 
 /// Moves robots under given actions.
-pub const STEP: Kernel = Kernel {
-    name: "step",
-    parts: &[part!("step.wgsl"), RNG, FUNCTIONS, LANES, MOVE, COLLIDE, SONAR, LIGHT, OBSERVE],
-};
+pub const STEP: Kernel =
+    Kernel { name: "step", parts: &[part!("step.wgsl"), RNG, FUNCTIONS, LANES, MOVE, COLLIDE, SONAR, LIGHT, OBSERVE] };
 
 /// Asks an adapter for the bits of the shipped arithmetic.
 pub const PROBE: Kernel = Kernel { name: "probe", parts: &[part!("backend/gpu/probe.wgsl"), RNG, FUNCTIONS, LANES] };

@@ -70,8 +70,7 @@ fn plain(checked: &Checked, kernel: &Kernel) -> Result<Vec<u32>, String> {
         force_loop_bounding: false,
         ..spv::Options::default()
     };
-    let entry =
-        spv::PipelineOptions { shader_stage: naga::ShaderStage::Compute, entry_point: kernel.name.to_owned() };
+    let entry = spv::PipelineOptions { shader_stage: naga::ShaderStage::Compute, entry_point: kernel.name.to_owned() };
     let constants = naga::back::PipelineConstants::default();
     let (module, info): (Cow<'_, _>, Cow<'_, _>) =
         naga::back::pipeline_constants::process_overrides(&checked.module, &checked.info, None, &constants)
