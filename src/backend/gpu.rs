@@ -154,7 +154,7 @@ impl GpuBackend {
     }
 
     /// The adapter in use.
-    pub fn adapter(&self) -> &wgpu::AdapterInfo {
+    pub fn info(&self) -> &wgpu::AdapterInfo {
         &self.device.info
     }
 
@@ -168,6 +168,14 @@ impl Backend for GpuBackend {
         let info = &self.device.info;
         let exact = if self.verdict.exact { "exact" } else { "not exact" };
         format!("gpu ({}, {}, {exact})", info.name, info.backend)
+    }
+
+    fn kind(&self) -> &'static str {
+        "gpu"
+    }
+
+    fn adapter(&self) -> Option<String> {
+        Some(self.device.info.name.clone())
     }
 
     fn cohort_size(&self, _largest_stride: usize, bytes_per_learner: usize) -> usize {
