@@ -111,7 +111,7 @@ impl Shard {
 
 /// Learners that keep a device busy and fit its memory; wgpu does not tell how much a graphics card has.
 pub fn fitting(device: &Device, bytes_per_learner: usize) -> usize {
-    let (most, memory) = if is_software(&device.info) { (1024, u64::MAX) } else { (16_384, 4 << 30) };
+    let (most, memory) = if is_software(&device.info) { (64, u64::MAX) } else { (16_384, 4 << 30) };
     // The host keeps a copy, and a software device's memory is the host's.
     let host = free_memory().map_or(u64::MAX, |free| free / 4);
     (host.min(memory) / bytes_per_learner.max(1) as u64).clamp(1, most) as usize
