@@ -6,8 +6,14 @@ use std::path::Path;
 use std::process::Command;
 
 /// Cuts an experiment down to a fraction of a second.
-const CUTS: [&str; 5] =
-    ["skill.dock.trials=6", "evaluate.at=[0, 3]", "evaluate.episodes=5", "teacher.episodes=20", "teacher.bank=32"];
+const CUTS: [&str; 6] = [
+    "world=../tests/support/small.toml",
+    "skill.dock.trials=6",
+    "evaluate.at=[0, 3]",
+    "evaluate.episodes=5",
+    "teacher.episodes=20",
+    "teacher.bank=32",
+];
 
 /// The program, in a folder.
 pub(crate) fn skilltree(dir: &Path) -> Command {
