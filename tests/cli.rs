@@ -19,8 +19,8 @@ struct Desk(TempDir);
 impl Desk {
     fn new() -> Self {
         let desk = Self(TempDir::new().unwrap());
-        desk.write("quick.toml", &shipped("quick.toml"));
-        desk.write("worlds/office.toml", &shipped("worlds/office.toml"));
+        desk.write("quick.toml", shipped("quick.toml"));
+        desk.write("worlds/office.toml", shipped("worlds/office.toml"));
         desk
     }
 
