@@ -493,10 +493,7 @@ fn help_teaches() {
         (&["--help"][..], &["run", "report", "probe", "Start with:", "configs/quick.toml"][..]),
         (&["run", "--help"], &["Examples:", "--seeds 0..256", "--set", "--backend", "--threads", "--out", "continues"]),
         (&["report", "--help"], &["Example:", "runs/quick", "report.html"]),
-        (
-            &["probe", "--help"],
-            &["Examples:", "--at 60,60,225", "move+12,turn-15", "--json", "bumpers", "counter-clockwise"],
-        ),
+        (&["probe", "--help"], &["Examples:", "--at L2", "--at 60,60,225", "--json", "bumpers", "counter-clockwise"]),
     ] {
         let output = desk.give(line);
         let text = String::from_utf8(output.stdout).unwrap();
@@ -505,6 +502,14 @@ fn help_teaches() {
         for words in says.iter().chain(&["Exit codes: 0 done; 2 wrong usage or config; 75"]) {
             assert!(text.contains(words), "`{words}` is not in {line:?}:\n{text}");
         }
+    }
+    // The examples of `probe` work as they stand.
+    let help = String::from_utf8(desk.give(&["probe", "--help"]).stdout).unwrap();
+    let examples: Vec<&str> = help.lines().filter_map(|line| line.strip_prefix("  skilltree ")).collect();
+    assert_eq!(examples.len(), 2, "{help}");
+    for example in examples {
+        let output = skilltree(Path::new(SHIPPED)).args(example.split_whitespace()).output().unwrap();
+        assert!(output.status.success(), "{example}: {}", String::from_utf8_lossy(&output.stderr));
     }
     let version = desk.give(&["--version"]);
     assert_eq!(String::from_utf8_lossy(&version.stdout), format!("skilltree {}\n", env!("CARGO_PKG_VERSION")));

@@ -20,9 +20,9 @@ use std::path::PathBuf;
 #[command(after_help = concat!(
     "Examples:\n",
     "  skilltree probe configs/docking.toml --at L2\n",
-    "  skilltree probe configs/docking.toml --at 60,60,225 --actions move+12,turn-15,move+12 --noise off --json\n\n",
-    "Keys of --json: x, y (inches), heading (degrees, 0 = east, counter-clockwise), room, sonar (24 inches, the first\n",
-    "straight ahead, then counter-clockwise every 15 degrees), light (24 of 0 or 1, same order), bumpers (front,\n",
+    "  skilltree probe configs/docking.toml --at 60,60,225 --actions move+12,turn-15 --json\n\n",
+    "Keys of --json: x, y (inches), heading (degrees, 0 = east, counter-clockwise), room, sonar (24 inches, the first ",
+    "straight ahead, then counter-clockwise every 15 degrees), light (24 of 0 or 1, same order), bumpers (front, ",
     "left, back, right), compass (degrees), blocked, docked.\n\n",
     exit_codes!()
 ))]

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 #[derive(Debug, clap::Args)]
 #[command(after_help = concat!(
     "Example:\n  skilltree report runs/quick\n\n",
-    "It writes report.html and figures/ into each folder, prints the summary, and computes nothing anew: the same\n",
+    "It writes report.html and figures/ into each folder, prints the summary, and computes nothing anew: the same ",
     "folder always gives the same bytes. `skilltree run` does this at its end by itself.\n\n",
     exit_codes!()
 ))]

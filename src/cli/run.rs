@@ -23,15 +23,16 @@ use std::time::Instant;
     "Examples:\n",
     "  skilltree run configs/quick.toml\n",
     "  skilltree run configs/docking.toml --seeds 0..256 --out runs/docking-256\n",
-    "  skilltree run configs/docking.toml --set skill.dock.trials=50 --set 'arms=[\"taught-adam\"]'\n\n",
-    "No choice of backend, threads, cohort or quanta changes a byte of the results. A run can be stopped at any time:\n",
+    "  skilltree run configs/docking.toml --set 'arms=[\"taught-adam\"]'\n",
+    "  skilltree run configs/docking.toml --set learning.rate=0.01 --out runs/fast\n\n",
+    "No choice of backend, threads, cohort or quanta changes a byte of the results. A run can be stopped at any time: ",
     "the same command continues it after the last cohort that was saved.\n\n",
     exit_codes!()
 ))]
 pub(super) struct Arguments {
     /// The experiment: a TOML file.
     config: PathBuf,
-    /// Seeds, instead of the config's: `0..7`, `5`, `1,2,5..9`.
+    /// Seeds, instead of the config's: `0..7` (7 left out), `5`, `1,2,5..9`.
     #[arg(long, value_name = "SEEDS")]
     seeds: Option<String>,
     /// Sets a key of the config, such as `learning.rate=0.01`; may be given several times.
@@ -39,10 +40,10 @@ pub(super) struct Arguments {
     set: Vec<String>,
     #[command(flatten)]
     backend: BackendArguments,
-    /// Learners that train together; found out if not given.
+    /// Learners that train together and are saved together; chosen to suit the backend if not given.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     cohort: Option<u32>,
-    /// The run folder; `runs/` and the config's name if not given.
+    /// The run folder; `runs/NAME` if not given, with the config's name.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
