@@ -141,7 +141,7 @@ fn replay(lane: u32, s: u32, base: u32) {
                 let lesson = taught_lesson(s, below(word, settings[s].lessons));
                 begin_replay(s, lesson, 1u);
             } else {
-                let lesson = lessons_base + recent_lesson(s, word);
+                let lesson = recent_lesson(s, word);
                 begin_replay(s, lesson, 0u);
             }
         }

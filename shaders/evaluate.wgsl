@@ -40,7 +40,8 @@ fn begin(s: u32, number: u32) {
 fn evaluate(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     let learner = dispatch.first + group.x;
     let number = group.y;
-    let slot = learner * dispatch.episodes + number;
+    // Results stand by the place of the learner in this dispatch: a test is read back part by part.
+    let slot = group.x * dispatch.episodes + number;
     episode = episodes[slot];
     let skill = dispatch.test_skill;
     let s = learner * dispatch.skills + skill;

@@ -13,7 +13,8 @@ use crate::qnet::forward::forward;
 use crate::robot::motion::{COLLISION, NO_ACTION, move_body};
 use crate::robot::noise::noise_of;
 use crate::skill::choose::{pick, sharpness, weigh};
-use crate::skill::observe::{DICE_ACTUATOR, DICE_CHOICE, encode, observe};
+use crate::skill::encode::encode;
+use crate::skill::observe::{DICE_ACTUATOR, DICE_CHOICE, observe};
 use crate::skill::reward::{passed_door, reward_of, room_of};
 use crate::skill::start::{start_pose, start_region};
 
@@ -146,7 +147,7 @@ fn act(learner: &mut Learner<'_>, scratch: &mut Scratch, base: u32, lessons_base
 
 /// Replays one transition: taught lessons first, then remembered ones.
 #[inline(always)]
-fn replay(learner: &mut Learner<'_>, scratch: &mut Scratch, base: u32, lessons_base: u32) {
+fn replay(learner: &mut Learner<'_>, scratch: &mut Scratch, base: u32) {
     let settings = &learner.settings[learner.cursor.skill as usize];
     let begun = learner.cursor.replay;
     let taught = if settings.lessons > 0 { settings.taught_replays } else { 0 };
@@ -168,7 +169,7 @@ fn replay(learner: &mut Learner<'_>, scratch: &mut Scratch, base: u32, lessons_b
                 let lesson = taught_lesson(learner, below(word, settings.lessons));
                 begin_replay(learner, lesson, 1);
             } else {
-                let lesson = lessons_base + recent_lesson(learner, word);
+                let lesson = recent_lesson(learner, word);
                 begin_replay(learner, lesson, 0);
             }
         }
@@ -191,7 +192,7 @@ pub fn advance(learner: &mut Learner<'_>, dispatch: &Dispatch) {
             PHASE_TEACH => teach(learner, &mut scratch, base),
             PHASE_START => start(learner, dispatch),
             PHASE_ACT => act(learner, &mut scratch, base, lessons_base),
-            _ => replay(learner, &mut scratch, base, lessons_base),
+            _ => replay(learner, &mut scratch, base),
         }
     }
 }

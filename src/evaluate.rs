@@ -10,7 +10,8 @@ use crate::qnet::forward::forward;
 use crate::robot::motion::{COLLISION, NO_ACTION, move_body};
 use crate::robot::noise::noise_of;
 use crate::skill::choose::weigh;
-use crate::skill::observe::{DICE_ACTUATOR, encode, observe};
+use crate::skill::encode::encode;
+use crate::skill::observe::{DICE_ACTUATOR, observe};
 use crate::skill::reward::{passed_door, reward_of, room_of};
 use crate::skill::start::start_pose;
 

@@ -27,9 +27,9 @@ fn trials(count: u32) -> Vec<TrialRow> {
         actions: i.wrapping_mul(2_654_435_761),
         steps: i % 255,
         reward: i as f32 * 0.1 - 3.0,
-        success: i % 3 == 0,
+        success: i.is_multiple_of(3),
         collisions: i % 4,
-        taught: i % 10 == 0,
+        taught: i.is_multiple_of(10),
     };
     (0..count).map(row).collect()
 }

@@ -30,7 +30,7 @@ fn lesson_word(offset: u32) -> u32 {
     if cursor.replay_taught == 1u {
         return bank[at];
     }
-    return lessons[at];
+    return lessons[lessons_base + at];
 }
 
 fn begin_replay(s: u32, lesson: u32, taught: u32) {

@@ -1,4 +1,4 @@
-// Elementary functions from + - *, comparisons and bit patterns.
+// Elementary functions from `+ - *`, comparisons and bit patterns.
 //
 // Coefficients: interpolation at Chebyshev nodes in 40 digits, rounded to f32 (our own).
 

@@ -1,4 +1,4 @@
-// The 32 lanes of a learner: arrays in Rust, the invocations of a workgroup here.
+// The 32 lanes of a learner: arrays in Rust, the invocations of a workgroup in WGSL.
 //
 // Every function must be reached by all lanes together. Each opens with a barrier, so that a
 // reduction never overwrites a value that a slower lane still has to read.

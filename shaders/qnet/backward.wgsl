@@ -10,9 +10,9 @@ struct Errors {
 fn errors(lane: u32, skill: u32, net: u32, child: u32, delta: f32) -> Errors {
     let value = q[child];
     let output = delta * (1.0f - value * value);
-    let active = hidden[child][lane];
+    let activation = hidden[child][lane];
     let weight = nets[net + (skills[skill].inputs + 1u) * LANES + lane];
-    return Errors(output, output * weight * (1.0f - active * active));
+    return Errors(output, output * weight * (1.0f - activation * activation));
 }
 
 fn gradient(lane: u32, skill: u32, child: u32, row: u32, errors: Errors) -> f32 {

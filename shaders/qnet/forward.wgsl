@@ -16,9 +16,9 @@ fn forward(lane: u32, skill: u32, base: u32) {
         for (var row = 0u; row < count; row++) {
             sum = sum + nets[net + row * LANES + lane] * inputs[row];
         }
-        let active = squash(sum);
-        hidden[child][lane] = active;
-        partials[child][lane] = active * nets[net + (count + 1u) * LANES + lane];
+        let activation = squash(sum);
+        hidden[child][lane] = activation;
+        partials[child][lane] = activation * nets[net + (count + 1u) * LANES + lane];
     }
     lanes_sums(lane, children);
     if lane < children {

@@ -1,4 +1,4 @@
-// One reading of all sensors, packed into a record, and a record's encoding as inputs of a net.
+// One reading of all sensors, packed into a record.
 //
 // A record's words: 0 to 5 the 24 sonar readings, a byte each; 6 the light bits and, from bit 24, the
 // bumpers; 7 the compass; 8 what was done (see `lesson/record`); 9 the reward.
@@ -6,14 +6,9 @@
 const DICE_ACTUATOR: u32 = 24u;
 const DICE_COMPASS: u32 = 25u;
 const DICE_CHOICE: u32 = 26u;
-const GROUP_SONAR: u32 = 0u;
-const GROUP_LIGHT: u32 = 1u;
-const GROUP_BUMPERS: u32 = 2u;
-const GROUP_COMPASS: u32 = 3u;
 
 var<workgroup> record: array<u32, RECORD_WORDS>;
 var<workgroup> readings: array<u32, LANES>;
-var<workgroup> inputs: array<f32, MAX_INPUTS>;
 
 fn observe(lane: u32, x: f32, y: f32, heading: f32, bumpers: u32, terms: Noise) {
     let turn = sin_cos(heading);
@@ -41,35 +36,6 @@ fn observe(lane: u32, x: f32, y: f32, heading: f32, bumpers: u32, terms: Noise) 
     if lane == 7u {
         let error = noise(terms.kind, dice[DICE_COMPASS].x, dice[DICE_COMPASS].y);
         record[7] = bitcast<u32>(wrap_degrees(heading + terms.compass * error));
-    }
-    workgroupBarrier();
-}
-
-fn encode(lane: u32, skill: u32) {
-    for (var group = 0u; group < skills[skill].groups; group++) {
-        let kind = skills[skill].group_kind[group];
-        let first = skills[skill].group_first[group];
-        if kind == GROUP_SONAR {
-            let table = skills[skill].group_table[group];
-            if lane < RAYS {
-                let byte = (record[lane / 4u] >> (8u * (lane % 4u))) & 0xffu;
-                inputs[first + lane] = bitcast<f32>(atlas[table + byte]);
-            }
-        } else if kind == GROUP_LIGHT {
-            if lane < RAYS {
-                inputs[first + lane] = f32((record[6] >> lane) & 1u);
-            }
-        } else if kind == GROUP_BUMPERS {
-            if lane < 4u {
-                inputs[first + lane] = f32((record[6] >> (24u + lane)) & 1u);
-            }
-        } else {
-            let turn = sin_cos(bitcast<f32>(record[7]));
-            if lane == 0u {
-                inputs[first] = turn.y;
-                inputs[first + 1u] = turn.x;
-            }
-        }
     }
     workgroupBarrier();
 }

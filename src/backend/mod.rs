@@ -4,6 +4,7 @@
 //! the same bytes. `cpu` touches no wgpu and runs where no Vulkan is installed.
 
 pub mod cpu;
+pub mod gpu;
 
 use crate::learner::layout::{Cursor, Episode, PHASE_DONE, PHASE_START, Robot, Settings};
 use crate::learner::memory::Shared;

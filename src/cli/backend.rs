@@ -1,6 +1,7 @@
 //! Which backend executes the kernels.
 
 use crate::backend::cpu::CpuBackend;
+use crate::backend::gpu::{GpuBackend, GpuOptions};
 use crate::backend::{Backend, BackendError};
 use clap::{Args, ValueEnum};
 
@@ -41,6 +42,24 @@ impl BackendArguments {
                 hint: "leave --threads out to use one per core".to_owned(),
             });
         }
+        let options = GpuOptions { adapter: self.adapter.clone(), quanta: self.quanta };
+        match self.backend {
+            Choice::Gpu => Ok(Box::new(GpuBackend::new(&options)?)),
+            // An adapter that is asked for by name is wanted, even where `auto` would not choose it.
+            Choice::Auto if self.adapter.is_some() => Ok(Box::new(GpuBackend::new(&options)?)),
+            Choice::Auto => match GpuBackend::exact(&options) {
+                Ok(backend) => Ok(Box::new(backend)),
+                Err(reason) => {
+                    let reason = reason.to_string();
+                    eprintln!("no exact GPU, so the CPU it is: {}", reason.lines().next().unwrap_or_default());
+                    self.cpu()
+                }
+            },
+            Choice::Cpu => self.cpu(),
+        }
+    }
+
+    fn cpu(&self) -> Result<Box<dyn Backend>, BackendError> {
         Ok(Box::new(CpuBackend::new(self.threads, self.quanta)?))
     }
 }

@@ -1,6 +1,7 @@
 //! The command line: one file per command.
 
 mod backend;
+mod devices;
 mod failure;
 mod probe;
 mod progress;
@@ -31,6 +32,7 @@ enum Command {
     Run(run::Arguments),
     Report(report::Arguments),
     Probe(probe::Arguments),
+    Devices(devices::Arguments),
 }
 
 /// Carries out what the user typed.
@@ -42,5 +44,6 @@ pub fn run(cli: Cli) -> Result<(), Failure> {
         Command::Run(arguments) => run::run(&arguments),
         Command::Report(arguments) => report::report(&arguments),
         Command::Probe(arguments) => probe::probe(&arguments),
+        Command::Devices(arguments) => devices::devices(&arguments),
     }
 }

@@ -6,7 +6,7 @@ use super::layout::{
 };
 use crate::config::plan::{Arm, Input, Noise, NoiseKind, Optimiser, Skill};
 use crate::qnet::init::init;
-use crate::skill::observe::{GROUP_BUMPERS, GROUP_COMPASS, GROUP_LIGHT, GROUP_SONAR};
+use crate::skill::encode::{GROUP_BUMPERS, GROUP_COMPASS, GROUP_LIGHT, GROUP_SONAR};
 use crate::world::World;
 use crate::world::atlas::Atlas;
 use bytemuck::Zeroable;

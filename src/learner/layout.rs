@@ -27,6 +27,12 @@ macro_rules! shared {
             $("    ", stringify!($field), ": ", shared!(@wgsl $kind), ",\n",)*
             "}\n"
         )),*];
+        /// Name, size and field offsets in bytes of every shared struct as Rust lays it out.
+        pub const LAYOUTS: &[(&str, usize, &[(&str, usize)])] = &[$((
+            stringify!($name),
+            size_of::<$name>(),
+            &[$((stringify!($field), std::mem::offset_of!($name, $field))),*],
+        )),*];
     };
     (@rust u32) => { u32 };
     (@rust f32) => { f32 };

@@ -12,7 +12,7 @@ use crate::math::rng::{Purpose, Stream, below, draw, unit};
 use crate::qnet::backward::backward;
 use crate::qnet::forward::forward;
 use crate::skill::choose::{sharpness, weigh};
-use crate::skill::observe::encode;
+use crate::skill::encode::encode;
 
 /// Word of the bank at which the learner's taught lesson `number` stands: one lesson drawn from each of
 /// `lessons` equal strata of the bank.

@@ -1,4 +1,4 @@
-//! The 32 lanes of a learner: arrays here, the invocations of a workgroup in WGSL.
+//! The 32 lanes of a learner: arrays in Rust, the invocations of a workgroup in WGSL.
 
 use crate::learner::layout::{LANES, MAX_CHILDREN};
 

@@ -25,9 +25,9 @@ pub fn errors(nets: &[f32], scratch: &Scratch, skill: &SkillPlan, net: u32, chil
     let output = delta * (1.0 - value * value);
     let mut hidden = [0.0; LANES];
     for lane in 0..LANES {
-        let active = scratch.hidden[child as usize][lane];
+        let activation = scratch.hidden[child as usize][lane];
         let weight = nets[(net + (skill.inputs + 1) * LANES as u32) as usize + lane];
-        hidden[lane] = output * weight * (1.0 - active * active);
+        hidden[lane] = output * weight * (1.0 - activation * activation);
     }
     Errors { output, hidden }
 }

@@ -26,9 +26,9 @@ pub fn forward(nets: &[f32], scratch: &mut Scratch, skill: &SkillPlan, base: u32
             }
         }
         for lane in 0..LANES {
-            let active = squash(sum[lane]);
-            scratch.hidden[child][lane] = active;
-            partials[child][lane] = active * weights[inputs + 1][lane];
+            let activation = squash(sum[lane]);
+            scratch.hidden[child][lane] = activation;
+            partials[child][lane] = activation * weights[inputs + 1][lane];
         }
     }
     lanes_sums(&mut partials, skill.children);

@@ -3,6 +3,7 @@
 //! Twins: `shaders/skill/`.
 
 pub mod choose;
+pub mod encode;
 pub mod observe;
 pub mod reward;
 pub mod start;

@@ -1,0 +1,379 @@
+//! The GPU backend: the kernels on any adapter of Vulkan, Metal or DX12.
+//!
+//! Learners stay in the device's memory. The host only says how far to go, waits, with a deadline, and
+//! looks at the cursors.
+
+pub mod adapter;
+pub mod canary;
+pub mod conformance;
+pub mod device;
+pub mod governor;
+pub mod pipeline;
+pub mod probe;
+pub mod shards;
+pub mod source;
+pub mod spirv;
+
+use super::{Backend, BackendError, Cohort, Stop, Test};
+use crate::evaluate::STATE_ACHIEVED;
+use crate::learner::layout::{Cursor, Dispatch, Episode, Robot};
+use crate::learner::memory::Shared;
+use bytemuck::Zeroable;
+use conformance::{Verdict, examine};
+use device::Device;
+use governor::{Governor, Share, ceiling, quantum_turns, step_turns};
+use pipeline::Pipeline;
+use shards::{Common, Shard};
+use source::{ADVANCE, EVALUATE, Kernel, STEP};
+use std::time::{Duration, Instant};
+use wgpu::BufferUsages;
+
+/// Work of one call of [`Backend::advance`].
+const TURN: Duration = Duration::from_millis(500);
+/// Most bytes of test results on the device at a time.
+const RESULTS: u64 = 64 << 20;
+
+/// What the user asked of the GPU.
+#[derive(Debug, Clone, Default)]
+pub struct GpuOptions {
+    /// Part of the adapter's name, `--adapter NAME`.
+    pub adapter: Option<String>,
+    /// Quanta of every dispatch, `--quanta N`; else as many as take some 50 ms.
+    pub quanta: Option<u32>,
+}
+
+/// Executes the kernels on an adapter.
+#[derive(Debug)]
+pub struct GpuBackend {
+    device: Device,
+    verdict: Verdict,
+    advance: Stage,
+    evaluate: Stage,
+    step: Stage,
+    loaded: Option<Loaded>,
+}
+
+/// A kernel, compiled at its first use, and the governor of its dispatches.
+#[derive(Debug)]
+struct Stage {
+    kernel: Kernel,
+    pipeline: Option<Pipeline>,
+    governor: Governor,
+}
+
+/// A cohort on the device and its copy on the host, which lags behind.
+#[derive(Debug)]
+struct Loaded {
+    cohort: Cohort,
+    common: Common,
+    shards: Vec<Shard>,
+    bindings: Vec<wgpu::BindGroup>,
+    dispatch: wgpu::Buffer,
+}
+
+impl Stage {
+    fn new(kernel: Kernel, quanta: Option<u32>) -> Self {
+        Self { kernel, pipeline: None, governor: Governor::new(quanta, 1) }
+    }
+
+    fn ready(&mut self, device: &Device) -> Result<(&Pipeline, &mut Governor), BackendError> {
+        if self.pipeline.is_none() {
+            self.pipeline = Some(Pipeline::new(device, self.kernel)?);
+        }
+        match &self.pipeline {
+            Some(pipeline) => Ok((pipeline, &mut self.governor)),
+            None => Err(nothing_loaded()),
+        }
+    }
+}
+
+/// Runs a dispatch and says how long it took.
+fn timed(
+    device: &Device,
+    pipeline: &Pipeline,
+    group: &wgpu::BindGroup,
+    uniform: &wgpu::Buffer,
+    dispatch: &Dispatch,
+    (x, y): (u32, u32),
+) -> Result<Duration, BackendError> {
+    device.queue.write_buffer(uniform, 0, bytemuck::bytes_of(dispatch));
+    let begun = Instant::now();
+    pipeline.dispatch(device, group, x, y)?;
+    Ok(begun.elapsed())
+}
+
+fn nothing_loaded() -> BackendError {
+    BackendError::Device { kernel: ADVANCE.name, message: "no cohort is loaded".to_owned() }
+}
+
+impl GpuBackend {
+    /// What `--backend gpu` asks for: the adapter of that name, else a real GPU, else a software one.
+    ///
+    /// # Errors
+    /// Where there is none, or it cannot be opened or answers no questions.
+    pub fn new(options: &GpuOptions) -> Result<Self, BackendError> {
+        Self::on(&adapter::choose(options.adapter.as_deref(), true)?, options)
+    }
+
+    /// What `--backend auto` asks for: a real GPU, or the one named, that is exact.
+    ///
+    /// # Errors
+    /// Why there is none, for the user to read; the CPU should be used then.
+    pub fn exact(options: &GpuOptions) -> Result<Self, BackendError> {
+        let found = Self::on(&adapter::choose(options.adapter.as_deref(), false)?, options)?;
+        match &found.verdict.reason {
+            Some(reason) if !found.verdict.exact => Err(BackendError::Unavailable {
+                message: format!("the adapter `{}` is not exact: {reason}", found.device.info.name),
+                hint: "`--backend gpu` uses it all the same; its results are then not those of the CPU".to_owned(),
+            }),
+            _ => Ok(found),
+        }
+    }
+
+    /// Opens an adapter and examines it.
+    ///
+    /// # Errors
+    /// Where it cannot be opened or fails.
+    pub fn on(adapter: &wgpu::Adapter, options: &GpuOptions) -> Result<Self, BackendError> {
+        let device = Device::open(adapter)?;
+        let verdict = examine(&device)?;
+        let stage = |kernel| Stage::new(kernel, options.quanta);
+        Ok(Self {
+            device,
+            verdict,
+            advance: stage(ADVANCE),
+            evaluate: stage(EVALUATE),
+            step: stage(STEP),
+            loaded: None,
+        })
+    }
+
+    /// What the conformance check found.
+    pub fn verdict(&self) -> &Verdict {
+        &self.verdict
+    }
+
+    /// The adapter in use.
+    pub fn info(&self) -> &wgpu::AdapterInfo {
+        &self.device.info
+    }
+
+    fn uniform(&self, kernel: &'static str) -> Result<wgpu::Buffer, BackendError> {
+        self.device.buffer(kernel, size_of::<Dispatch>() as u64, BufferUsages::UNIFORM)
+    }
+}
+
+impl Backend for GpuBackend {
+    fn describe(&self) -> String {
+        let info = &self.device.info;
+        let exact = if self.verdict.exact { "exact" } else { "not exact" };
+        format!("gpu ({}, {}, {exact})", info.name, info.backend)
+    }
+
+    fn kind(&self) -> &'static str {
+        "gpu"
+    }
+
+    fn adapter(&self) -> Option<String> {
+        Some(self.device.info.name.clone())
+    }
+
+    fn cohort_size(&self, _largest_stride: usize, bytes_per_learner: usize) -> usize {
+        // Cohorts are cut into shards, so no buffer's limit counts here, only memory.
+        shards::fitting(&self.device, bytes_per_learner)
+    }
+
+    fn load(&mut self, cohort: Cohort) -> Result<(), BackendError> {
+        // The old cohort's memory is free before the new one's is taken.
+        self.loaded = None;
+        let turns = quantum_turns(&cohort.shared);
+        let most = ceiling(self.verdict.loop_budget, turns);
+        self.advance.governor.set_ceiling(most);
+        self.evaluate.governor.set_ceiling(most);
+        let common = Common::new(&self.device, ADVANCE.name, &cohort.shared)?;
+        let shards = shards::upload(&self.device, &cohort)?;
+        let dispatch = self.uniform(ADVANCE.name)?;
+        let (pipeline, _) = self.advance.ready(&self.device)?;
+        let bindings = shards
+            .iter()
+            .map(|shard| {
+                let Common { world, atlas, skills, bank } = &common;
+                let Shard { settings, cursors, nets, lessons, rows, .. } = shard;
+                let buffers = [&dispatch, world, atlas, skills, bank, settings, cursors, nets, lessons, rows];
+                pipeline.bind(&self.device, &buffers)
+            })
+            .collect();
+        self.device.sound(ADVANCE.name)?;
+        self.loaded = Some(Loaded { cohort, common, shards, bindings, dispatch });
+        Ok(())
+    }
+
+    fn advance(&mut self, stop: Stop) -> Result<&[Cursor], BackendError> {
+        let loaded = self.loaded.as_mut().ok_or_else(nothing_loaded)?;
+        let (pipeline, governor) = self.advance.ready(&self.device)?;
+        let Loaded { cohort, shards, bindings, dispatch: uniform, .. } = loaded;
+        let begun = Instant::now();
+        loop {
+            let waiting = count_waiting(&cohort.cursors, stop);
+            if waiting == 0 || begun.elapsed() >= TURN {
+                break;
+            }
+            let mut last = None;
+            for (shard, binding) in shards.iter().zip(&*bindings) {
+                let learners = shard.learners.len() as u32;
+                let mut first = 0;
+                while first < learners {
+                    let share = governor.share(learners - first);
+                    let dispatch = Dispatch {
+                        quanta: share.quanta,
+                        stop_skill: stop.skill,
+                        stop_trial: stop.trial,
+                        first,
+                        ..of(cohort, learners)
+                    };
+                    let elapsed = timed(&self.device, pipeline, binding, uniform, &dispatch, (share.groups, 1))?;
+                    governor.took(share, elapsed, false);
+                    last = Some((share, elapsed));
+                    first += share.groups;
+                }
+                shard.read_cursors(&self.device, cohort)?;
+            }
+            let busy = 2 * count_waiting(&cohort.cursors, stop) >= waiting && 2 * waiting >= cohort.cursors.len();
+            if let Some((share, elapsed)) = last {
+                governor.took(share, elapsed, busy);
+            }
+        }
+        Ok(&cohort.cursors)
+    }
+
+    fn evaluate(&mut self, test: Test) -> Result<Vec<Episode>, BackendError> {
+        let loaded = self.loaded.as_ref().ok_or_else(nothing_loaded)?;
+        let (pipeline, governor) = self.evaluate.ready(&self.device)?;
+        let Loaded { cohort, common, shards, dispatch: uniform, .. } = loaded;
+        let mut episodes = vec![Episode::zeroed(); cohort.cursors.len() * test.episodes as usize];
+        if episodes.is_empty() {
+            return Ok(episodes);
+        }
+        // One test trial of a learner is a workgroup; the dispatch has a row of them per learner.
+        if test.episodes > governor::GROUPS {
+            let message = format!("{} test trials at a time, {} are possible", test.episodes, governor::GROUPS);
+            return Err(BackendError::TooLarge { learners: cohort.cursors.len(), message });
+        }
+        let one = u64::from(test.episodes) * size_of::<Episode>() as u64;
+        let room = (RESULTS / one).max(1) as usize;
+        let results = self.device.buffer(
+            EVALUATE.name,
+            one * room.min(cohort.cursors.len()) as u64,
+            BufferUsages::STORAGE | BufferUsages::COPY_SRC,
+        )?;
+        for shard in shards {
+            let binding = pipeline.bind(
+                &self.device,
+                &[uniform, &common.world, &common.atlas, &common.skills, &shard.settings, &shard.nets, &results],
+            );
+            let learners = shard.learners.len();
+            let mut first = 0;
+            while first < learners {
+                let share = governor.share((learners - first) as u32 * test.episodes);
+                let count = (share.groups / test.episodes).max(1) as usize;
+                let count = count.min(room).min(learners - first);
+                let from = (shard.learners.start + first) * test.episodes as usize;
+                let part = &mut episodes[from..from + count * test.episodes as usize];
+                let dispatch = Dispatch {
+                    first: first as u32,
+                    episodes: test.episodes,
+                    test_skill: test.skill,
+                    test_number: test.number,
+                    ..of(cohort, learners as u32)
+                };
+                finish(&self.device, pipeline, governor, (&binding, uniform, &results), dispatch, part)?;
+                first += count;
+            }
+        }
+        Ok(episodes)
+    }
+
+    fn memory(&mut self) -> Result<&Cohort, BackendError> {
+        let loaded = self.loaded.as_mut().ok_or_else(nothing_loaded)?;
+        for shard in &loaded.shards {
+            shard.read(&self.device, &mut loaded.cohort)?;
+        }
+        Ok(&loaded.cohort)
+    }
+
+    fn step(&mut self, shared: &Shared, robots: &mut [Robot], quanta: u32) -> Result<(), BackendError> {
+        let uniform = self.uniform(STEP.name)?;
+        let common = Common::new(&self.device, STEP.name, shared)?;
+        let most = ceiling(self.verdict.loop_budget, step_turns(shared));
+        self.step.governor.set_ceiling(most);
+        let (pipeline, governor) = self.step.ready(&self.device)?;
+        for robots in robots.chunks_mut(governor::GROUPS as usize) {
+            let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
+            let buffer = self.device.buffer(STEP.name, size_of_val(robots) as u64, usage)?;
+            self.device.upload(STEP.name, &buffer, bytemuck::cast_slice(robots))?;
+            let binding = pipeline.bind(&self.device, &[&uniform, &common.world, &common.atlas, &buffer]);
+            let mut first = 0;
+            while first < robots.len() as u32 {
+                let waiting = robots.len() as u32 - first;
+                let groups = governor.share(waiting).groups;
+                let mut left = quanta;
+                while left > 0 {
+                    let share = Share { groups, quanta: governor.share(groups).quanta.min(left) };
+                    let dispatch = Dispatch { quanta: share.quanta, first, ..Dispatch::zeroed() };
+                    let elapsed = timed(&self.device, pipeline, &binding, &uniform, &dispatch, (groups, 1))?;
+                    governor.took(share, elapsed, true);
+                    left -= share.quanta;
+                }
+                first += groups;
+            }
+            self.device.download(STEP.name, &buffer, bytemuck::cast_slice_mut(robots))?;
+        }
+        Ok(())
+    }
+}
+
+/// The part of a dispatch that the cohort's shape decides.
+fn of(cohort: &Cohort, learners: u32) -> Dispatch {
+    Dispatch {
+        skills: cohort.skills as u32,
+        nets_stride: cohort.nets_stride as u32,
+        lessons_stride: cohort.lessons_stride as u32,
+        rows_stride: cohort.rows_stride as u32,
+        learners,
+        ..Dispatch::zeroed()
+    }
+}
+
+fn count_waiting(cursors: &[Cursor], stop: Stop) -> usize {
+    cursors.iter().filter(|cursor| !stop.holds(cursor)).count()
+}
+
+/// Dispatches test trials until all have ended.
+fn finish(
+    device: &Device,
+    pipeline: &Pipeline,
+    governor: &mut Governor,
+    (binding, uniform, results): (&wgpu::BindGroup, &wgpu::Buffer, &wgpu::Buffer),
+    mut dispatch: Dispatch,
+    episodes: &mut [Episode],
+) -> Result<(), BackendError> {
+    // No trial is longer than this: step limits are at most 255.
+    const LONGEST: u32 = 1 << 16;
+    device.upload(EVALUATE.name, results, bytemuck::cast_slice(episodes))?;
+    let groups = episodes.len() as u32;
+    let mut quanta = 0;
+    while quanta < LONGEST {
+        let share = Share { groups, quanta: governor.share(groups).quanta };
+        dispatch.quanta = share.quanta;
+        let size = (groups / dispatch.episodes, dispatch.episodes);
+        let elapsed = timed(device, pipeline, binding, uniform, &dispatch, size)?;
+        device.download(EVALUATE.name, results, bytemuck::cast_slice_mut(episodes))?;
+        let running = episodes.iter().filter(|episode| episode.state < STATE_ACHIEVED).count();
+        governor.took(share, elapsed, 2 * running >= episodes.len());
+        if running == 0 {
+            return Ok(());
+        }
+        quanta += share.quanta;
+    }
+    Err(BackendError::Device { kernel: EVALUATE.name, message: "a test trial does not end".to_owned() })
+}

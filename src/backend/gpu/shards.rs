@@ -1,0 +1,182 @@
+//! A cohort in device memory: runs of learners, each in its own buffers, as no buffer may be of any size.
+//!
+//! A learner's numbers do not depend on its place, so neither do they on where the cohort is cut.
+
+use super::device::{Device, is_software};
+use crate::backend::{BackendError, Cohort};
+use crate::learner::layout::{Cursor, Settings, SkillPlan, WorldPlan};
+use crate::learner::memory::Shared;
+use std::ops::Range;
+use wgpu::BufferUsages;
+
+/// Label of the buffers that outlive a kernel.
+const COHORT: &str = "advance";
+/// Memory that is left to the rest of the machine where the device shares it.
+const SPARE: u64 = 512 << 20;
+
+/// Buffers that all learners read.
+#[derive(Debug)]
+pub struct Common {
+    /// The floor plan, a uniform.
+    pub world: wgpu::Buffer,
+    /// Segment lists, regions, tables.
+    pub atlas: wgpu::Buffer,
+    /// Shapes of the skills.
+    pub skills: wgpu::Buffer,
+    /// Taught lessons.
+    pub bank: wgpu::Buffer,
+}
+
+impl Common {
+    /// Uploads what all learners or robots share.
+    ///
+    /// # Errors
+    /// Where the device has no room.
+    pub fn new(device: &Device, kernel: &'static str, shared: &Shared) -> Result<Self, BackendError> {
+        let world: &WorldPlan = &shared.floor.plan;
+        let buffer = |bytes: &[u8], least: usize, usage| {
+            let buffer = device.buffer(kernel, bytes.len().max(least) as u64, usage)?;
+            device.upload(kernel, &buffer, bytes).map(|()| buffer)
+        };
+        Ok(Self {
+            world: buffer(bytemuck::bytes_of(world), 0, BufferUsages::UNIFORM)?,
+            atlas: buffer(bytemuck::cast_slice(&shared.atlas), 4, BufferUsages::STORAGE)?,
+            skills: buffer(bytemuck::cast_slice(&shared.skills), size_of::<SkillPlan>(), BufferUsages::STORAGE)?,
+            bank: buffer(bytemuck::cast_slice(&shared.bank), 4, BufferUsages::STORAGE)?,
+        })
+    }
+}
+
+/// Some learners' buffers.
+#[derive(Debug)]
+pub struct Shard {
+    /// Which learners of the cohort.
+    pub learners: Range<usize>,
+    /// Their settings.
+    pub settings: wgpu::Buffer,
+    /// Their cursors.
+    pub cursors: wgpu::Buffer,
+    /// Their nets.
+    pub nets: wgpu::Buffer,
+    /// Their lessons.
+    pub lessons: wgpu::Buffer,
+    /// Their trial tables.
+    pub rows: wgpu::Buffer,
+}
+
+/// Words of a cohort's vector that belong to some learners.
+fn part(learners: &Range<usize>, stride: usize) -> Range<usize> {
+    learners.start * stride..learners.end * stride
+}
+
+impl Shard {
+    fn new(device: &Device, cohort: &Cohort, learners: Range<usize>) -> Result<Self, BackendError> {
+        let buffer = |bytes: &[u8]| {
+            let buffer = device.buffer(COHORT, bytes.len() as u64, BufferUsages::STORAGE | BufferUsages::COPY_SRC)?;
+            device.upload(COHORT, &buffer, bytes).map(|()| buffer)
+        };
+        Ok(Self {
+            settings: buffer(bytemuck::cast_slice(&cohort.settings[part(&learners, cohort.skills)]))?,
+            cursors: buffer(bytemuck::cast_slice(&cohort.cursors[learners.clone()]))?,
+            nets: buffer(bytemuck::cast_slice(&cohort.nets[part(&learners, cohort.nets_stride)]))?,
+            lessons: buffer(bytemuck::cast_slice(&cohort.lessons[part(&learners, cohort.lessons_stride)]))?,
+            rows: buffer(bytemuck::cast_slice(&cohort.rows[part(&learners, cohort.rows_stride)]))?,
+            learners,
+        })
+    }
+
+    /// Reads the cursors back.
+    ///
+    /// # Errors
+    /// Where the device fails.
+    pub fn read_cursors(&self, device: &Device, cohort: &mut Cohort) -> Result<(), BackendError> {
+        let cursors = &mut cohort.cursors[self.learners.clone()];
+        device.download(COHORT, &self.cursors, bytemuck::cast_slice_mut(cursors))
+    }
+
+    /// Reads everything back that kernels write.
+    ///
+    /// # Errors
+    /// Where the device fails.
+    pub fn read(&self, device: &Device, cohort: &mut Cohort) -> Result<(), BackendError> {
+        self.read_cursors(device, cohort)?;
+        let nets = &mut cohort.nets[part(&self.learners, cohort.nets_stride)];
+        device.download(COHORT, &self.nets, bytemuck::cast_slice_mut(nets))?;
+        let lessons = &mut cohort.lessons[part(&self.learners, cohort.lessons_stride)];
+        device.download(COHORT, &self.lessons, bytemuck::cast_slice_mut(lessons))?;
+        let rows = &mut cohort.rows[part(&self.learners, cohort.rows_stride)];
+        device.download(COHORT, &self.rows, bytemuck::cast_slice_mut(rows))
+    }
+}
+
+/// Learners that keep a device busy and fit its memory; wgpu does not tell how much a graphics card has.
+pub fn fitting(device: &Device, bytes_per_learner: usize) -> usize {
+    let (most, memory) = if is_software(&device.info) { (64, u64::MAX) } else { (16_384, 4 << 30) };
+    // The host keeps a copy, and a software device's memory is the host's.
+    let host = free_memory().map_or(u64::MAX, |free| free / 4);
+    (host.min(memory) / bytes_per_learner.max(1) as u64).clamp(1, most) as usize
+}
+
+/// Cuts a cohort into shards and uploads them.
+///
+/// # Errors
+/// [`BackendError::TooLarge`] where a learner exceeds a buffer, or the cohort the memory.
+pub fn upload(device: &Device, cohort: &Cohort) -> Result<Vec<Shard>, BackendError> {
+    let learners = cohort.cursors.len();
+    let too_large = |message: String| BackendError::TooLarge { learners, message };
+    let limits = device.device.limits();
+    let largest = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+    for (bytes, what) in [
+        (size_of_val(&cohort.shared.bank[..]), "the taught lessons"),
+        (size_of_val(&cohort.shared.atlas[..]), "the atlas"),
+    ] {
+        if bytes as u64 > largest {
+            return Err(too_large(format!("{what} take {bytes} bytes, a buffer holds {largest}")));
+        }
+    }
+    let widest = [
+        cohort.skills * size_of::<Settings>(),
+        size_of::<Cursor>(),
+        4 * cohort.nets_stride,
+        4 * cohort.lessons_stride,
+        4 * cohort.rows_stride,
+    ];
+    let widest = widest.into_iter().max().unwrap_or(1).max(1) as u64;
+    // Kernels count words in 32 bits, and a dispatch counts workgroups in 16.
+    let most = (largest.min(u64::from(u32::MAX)) / widest).min(u64::from(super::governor::GROUPS)) as usize;
+    if most == 0 {
+        return Err(too_large(format!("one learner takes a buffer of {widest} bytes, a buffer holds {largest}")));
+    }
+    if is_software(&device.info) {
+        let needed = bytes(cohort);
+        // Software adapters take memory that is not there and fail later, by signal.
+        if let Some(free) = free_memory()
+            && needed + SPARE > free
+        {
+            let (needed, free) = (needed >> 20, free >> 20);
+            return Err(too_large(format!("they take {needed} MiB, and {free} MiB of memory are free")));
+        }
+    }
+    let scope = device.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+    let shards = (0..learners.div_ceil(most))
+        .map(|shard| Shard::new(device, cohort, shard * most..learners.min((shard + 1) * most)))
+        .collect::<Result<Vec<_>, _>>();
+    if let Some(error) = pollster::block_on(scope.pop()) {
+        return Err(too_large(error.to_string()));
+    }
+    shards
+}
+
+/// Bytes of a cohort on the device.
+fn bytes(cohort: &Cohort) -> u64 {
+    let words = cohort.nets.len() + cohort.lessons.len() + cohort.rows.len() + cohort.shared.bank.len();
+    (4 * words + size_of_val(&cohort.settings[..]) + size_of_val(&cohort.cursors[..])) as u64
+}
+
+/// Bytes of memory that are free on this machine, where that can be told.
+fn free_memory() -> Option<u64> {
+    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
+    let line = text.lines().find(|line| line.starts_with("MemAvailable:"))?;
+    let kibibytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(kibibytes << 10)
+}

@@ -1,0 +1,116 @@
+//! The text of every shipped kernel: an ordered list of parts, opened by the shared constants and structs.
+
+use crate::learner::layout::prelude;
+
+/// One WGSL file.
+#[derive(Debug, Clone, Copy)]
+pub struct Part {
+    /// Path below `shaders/`; its twin has the same path below `src/`.
+    pub path: &'static str,
+    /// The file's text.
+    pub text: &'static str,
+}
+
+macro_rules! part {
+    ($path:literal) => {
+        Part { path: $path, text: include_str!(concat!("../../../shaders/", $path)) }
+    };
+}
+
+/// One kernel. Its entry point bears its name.
+#[derive(Debug, Clone, Copy)]
+pub struct Kernel {
+    /// One word: file, entry point and label.
+    pub name: &'static str,
+    /// Its own file first, which declares the bindings, then everything it calls.
+    pub parts: &'static [Part],
+}
+
+impl Kernel {
+    /// The complete WGSL text.
+    pub fn wgsl(&self) -> String {
+        let mut text = prelude();
+        for part in self.parts {
+            text.push_str(part.text);
+        }
+        text
+    }
+}
+
+const RNG: Part = part!("math/rng.wgsl");
+const FUNCTIONS: Part = part!("math/functions.wgsl");
+const LANES: Part = part!("math/lanes.wgsl");
+const MOVE: Part = part!("robot/move.wgsl");
+const COLLIDE: Part = part!("robot/collide.wgsl");
+const SONAR: Part = part!("robot/sonar.wgsl");
+const LIGHT: Part = part!("robot/light.wgsl");
+const NOISE: Part = part!("robot/noise.wgsl");
+const OBSERVE: Part = part!("skill/observe.wgsl");
+const ENCODE: Part = part!("skill/encode.wgsl");
+const REWARD: Part = part!("skill/reward.wgsl");
+const CHOOSE: Part = part!("skill/choose.wgsl");
+const START: Part = part!("skill/start.wgsl");
+const FORWARD: Part = part!("qnet/forward.wgsl");
+const BACKWARD: Part = part!("qnet/backward.wgsl");
+const RECORD: Part = part!("lesson/record.wgsl");
+const REPLAY: Part = part!("lesson/replay.wgsl");
+
+/// Moves learners on.
+pub const ADVANCE: Kernel = Kernel {
+    name: "advance",
+    parts: &[
+        part!("advance.wgsl"),
+        RNG,
+        FUNCTIONS,
+        LANES,
+        MOVE,
+        COLLIDE,
+        SONAR,
+        LIGHT,
+        NOISE,
+        OBSERVE,
+        ENCODE,
+        REWARD,
+        CHOOSE,
+        START,
+        FORWARD,
+        BACKWARD,
+        RECORD,
+        REPLAY,
+    ],
+};
+
+/// Runs test trials.
+pub const EVALUATE: Kernel = Kernel {
+    name: "evaluate",
+    parts: &[
+        part!("evaluate.wgsl"),
+        RNG,
+        FUNCTIONS,
+        LANES,
+        MOVE,
+        COLLIDE,
+        SONAR,
+        LIGHT,
+        NOISE,
+        OBSERVE,
+        ENCODE,
+        REWARD,
+        CHOOSE,
+        START,
+        FORWARD,
+    ],
+};
+
+/// Moves robots under given actions.
+pub const STEP: Kernel =
+    Kernel { name: "step", parts: &[part!("step.wgsl"), RNG, FUNCTIONS, LANES, MOVE, COLLIDE, SONAR, LIGHT, OBSERVE] };
+
+/// Asks an adapter for the bits of the shipped arithmetic.
+pub const PROBE: Kernel = Kernel { name: "probe", parts: &[part!("backend/gpu/probe.wgsl"), RNG, FUNCTIONS, LANES] };
+
+/// Counts how many turns a loop really takes.
+pub const CANARY: Kernel = Kernel { name: "canary", parts: &[part!("backend/gpu/canary.wgsl")] };
+
+/// Every shipped kernel.
+pub const KERNELS: &[Kernel] = &[ADVANCE, EVALUATE, STEP, PROBE, CANARY];

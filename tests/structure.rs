@@ -1,0 +1,181 @@
+//! The two rules that keep the code in shape: twins, and one direction.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Files with this ending below a folder, as paths relative to it, sorted.
+fn files(folder: &Path, ending: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(open) = folders.pop() {
+        for entry in std::fs::read_dir(&open).unwrap_or_else(|error| panic!("{}: {error}", open.display())) {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.to_string_lossy().ends_with(ending) {
+                found.push(path.strip_prefix(folder).expect("below").to_string_lossy().into_owned());
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+fn read(path: &Path) -> String {
+    std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// A Rust file without its tests.
+fn shipped(text: &str) -> &str {
+    text.split("#[cfg(test)]").next().unwrap_or(text)
+}
+
+/// Names of the functions that a file declares, in order.
+fn functions(text: &str) -> Vec<&str> {
+    text.lines()
+        .filter_map(|line| line.strip_prefix("pub fn ").or_else(|| line.strip_prefix("fn ")))
+        .filter_map(|rest| rest.split(['(', '<']).next())
+        .collect()
+}
+
+/// Comments within functions. One that stands before a barrier has no counterpart: Rust has no barriers.
+fn comments(text: &str) -> Vec<String> {
+    let lines: Vec<&str> = text.lines().filter(|line| line.starts_with(' ')).map(str::trim).collect();
+    let mut found = Vec::new();
+    let mut block = Vec::new();
+    for line in lines {
+        if line.starts_with("//") && !line.starts_with("///") {
+            block.push(line.to_owned());
+        } else {
+            if !line.ends_with("Barrier();") {
+                found.append(&mut block);
+            }
+            block.clear();
+        }
+    }
+    found
+}
+
+/// The first sentence of the comment that opens a file.
+fn purpose(text: &str) -> String {
+    let lines = text.lines().take_while(|line| line.starts_with("//"));
+    let header: Vec<&str> = lines.map(|line| line.trim_start_matches(['/', '!']).trim()).collect();
+    let header = header.join(" ");
+    header.split_inclusive(". ").next().unwrap_or_default().trim().to_owned()
+}
+
+/// Comments in shaders that say something about workgroups, which Rust does not have.
+const OWN_COMMENTS: &[(&str, &str)] = &[(
+    "evaluate.wgsl",
+    "// Results stand by the place of the learner in this dispatch: a test is read back part by part.",
+)];
+
+#[test]
+fn every_shader_has_its_twin() {
+    let mut breaches = Vec::new();
+    for path in files(&root().join("shaders"), ".wgsl") {
+        let twin = root().join("src").join(path.replace(".wgsl", ".rs"));
+        if !twin.exists() {
+            breaches.push(format!("{path}: no {}", twin.display()));
+            continue;
+        }
+        let (wgsl, rust) = (read(&root().join("shaders").join(&path)), read(&twin));
+        let rust = shipped(&rust);
+        if functions(&wgsl) != functions(rust) {
+            breaches.push(format!("{path}: functions {:?}, in Rust {:?}", functions(&wgsl), functions(rust)));
+        }
+        let own: Vec<_> = OWN_COMMENTS.iter().filter(|(file, _)| *file == path).map(|(_, text)| *text).collect();
+        let mut said = comments(&wgsl);
+        said.retain(|comment| !own.contains(&comment.as_str()));
+        if said != comments(rust) {
+            breaches.push(format!("{path}: comments {said:#?}, in Rust {:#?}", comments(rust)));
+        }
+        if purpose(&wgsl) != purpose(rust) {
+            breaches.push(format!("{path}: `{}`, in Rust `{}`", purpose(&wgsl), purpose(rust)));
+        }
+    }
+    assert!(breaches.is_empty(), "{}", breaches.join("\n"));
+}
+
+/// Rust files beside the twins that have no shader, and why.
+const WITHOUT_SHADER: &[(&str, &str)] = &[
+    ("qnet/init.rs", "initial weights are made once, on the host, for both backends"),
+    ("robot/floor.rs", "the CPU wants the segments as arrays; the GPU reads the plan"),
+];
+
+#[test]
+fn nothing_but_twins_stands_among_the_kernels() {
+    let shaders: BTreeSet<String> = files(&root().join("shaders"), ".wgsl").into_iter().collect();
+    for folder in ["math", "robot", "skill", "qnet", "lesson"] {
+        for file in files(&root().join("src").join(folder), ".rs") {
+            let path = format!("{folder}/{file}");
+            let listed = WITHOUT_SHADER.iter().any(|(listed, _)| *listed == path);
+            let twin = shaders.contains(&path.replace(".rs", ".wgsl"));
+            assert!(file == "mod.rs" || (listed != twin), "src/{path} has no shader, or is listed and has one");
+        }
+    }
+}
+
+/// Each part of the house and what it may use. `learner` is the shared layout of memory: world and config read
+/// its sizes from it. Experiments hand their results to `record`; reports read run folders only.
+const DIRECTION: &[(&str, &[&str])] = &[
+    ("config", &["world", "learner"]),
+    ("world", &["config", "learner"]),
+    ("math", &["learner"]),
+    ("learner", &["config", "world", "math", "robot", "skill", "qnet"]),
+    ("robot", &["learner", "math"]),
+    ("skill", &["learner", "math", "robot", "world"]),
+    ("qnet", &["learner", "math"]),
+    ("lesson", &["learner", "math", "skill", "qnet"]),
+    ("advance", KERNELS),
+    ("evaluate", KERNELS),
+    ("step", KERNELS),
+    ("teacher", &["config", "world", "learner", "math", "robot", "skill", "lesson"]),
+    ("backend", &["learner", "math", "robot", "skill", "qnet", "lesson", "advance", "evaluate", "step"]),
+    ("record", &[]),
+    (
+        "experiment",
+        &["config", "world", "learner", "math", "robot", "skill", "qnet", "evaluate", "teacher", "backend", "record"],
+    ),
+    ("report", &["config", "world", "math", "record"]),
+    ("cli", &["config", "world", "learner", "robot", "backend", "experiment", "record", "report"]),
+    ("lib", &[]),
+    ("main", &["cli"]),
+];
+const KERNELS: &[&str] = &["learner", "math", "robot", "skill", "qnet", "lesson"];
+
+/// Parts that a text names as `crate::part`.
+fn uses(text: &str) -> BTreeSet<String> {
+    let code = text.lines().filter(|line| !line.trim_start().starts_with("//"));
+    let names = code.flat_map(|line| line.split("crate::").skip(1));
+    let names = names.filter_map(|rest| rest.split(|c: char| !c.is_ascii_lowercase() && c != '_').next());
+    names.filter(|name| !name.is_empty()).map(str::to_owned).collect()
+}
+
+#[test]
+fn nothing_reaches_back() {
+    for file in files(&root().join("src"), ".rs") {
+        let part = file.split('/').next().unwrap_or_default().trim_end_matches(".rs").to_owned();
+        let allowed = DIRECTION.iter().find(|(name, _)| *name == part);
+        let allowed = allowed.unwrap_or_else(|| panic!("src/{file}: give `{part}` its place in DIRECTION")).1;
+        for used in uses(shipped(&read(&root().join("src").join(&file)))) {
+            assert!(used == part || allowed.contains(&used.as_str()), "src/{file} uses crate::{used}");
+        }
+    }
+}
+
+/// Where no Vulkan is installed, everything but the GPU backend must work.
+#[test]
+fn only_the_gpu_backend_knows_wgpu() {
+    for file in files(&root().join("src"), ".rs") {
+        let gpu = file == "backend/gpu.rs" || file.starts_with("backend/gpu/") || file == "cli/devices.rs";
+        let text = read(&root().join("src").join(&file));
+        let code = text.lines().filter(|line| !line.trim_start().starts_with("//"));
+        let named = code.filter(|line| line.contains("wgpu") || line.contains("naga")).count();
+        assert!(gpu || named == 0, "src/{file} names wgpu or naga");
+    }
+}
