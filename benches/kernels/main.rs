@@ -62,7 +62,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for _sample in 0..SAMPLES {
         let mut nets = reference_nets(&group, &cohort);
         backend.load(cohort.clone())?;
-        times.0.push(timed(|| Ok(drop(backend.advance(Stop { skill: 0, trial: 0 })?.to_vec())))?);
+        times.0.push(timed(|| {
+            backend.advance(Stop { skill: 0, trial: 0 })?;
+            Ok(())
+        })?);
         times.1.push(timed(|| {
             transitions = replay_scalar(&group, &cohort, &mut nets);
             Ok(())
