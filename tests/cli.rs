@@ -298,7 +298,7 @@ fn places_that_cannot_be_written_are_refused() {
         ("/dev/null", "/dev/null"),
     ];
     for (out, says) in cases {
-        let tiny = ["--set", "teacher.bank=10", "--set", "teacher.episodes=1"];
+        let tiny = ["--backend", "cpu", "--set", "teacher.bank=10", "--set", "teacher.episodes=1"];
         desk.refuses(&[&["run", "quick.toml", "--out", out], &tiny[..]].concat(), 1, &[says, "--out"][..1]);
     }
 }
