@@ -15,7 +15,7 @@ use skilltree::qnet::backward::{CLOCK_SECOND, backward};
 use skilltree::qnet::forward::{forward, net_of};
 use skilltree::robot::floor::Floor;
 use skilltree::skill::choose::{pick, sharpness, weigh};
-use skilltree::skill::observe::encode;
+use skilltree::skill::encode::encode;
 use std::path::Path;
 
 /// A learning rate so small that no Q-value changes, and a power of two, so that what was learned can be read off.
