@@ -1,18 +1,114 @@
-//! skilltree
+//! `skilltree` trains thousands of small simulated robots at once, each learning its own tree of skills by
+//! reinforcement, on any GPU or on the CPU, and gets the same bytes on both. It reproduces Long-Ji Lin,
+//! "Hierarchical Learning of Robot Skills by Reinforcement" (1993); today it covers section V, docking.
+//!
+//! # One learner is one workgroup of 32 lanes
+//!
+//! A learner is one independent run: its robot, its nets, its lessons, its random stream, its numbers. On a
+//! GPU a workgroup of 32 invocations owns it; on the CPU one thread does, and the lanes are the elements of
+//! a 32-wide array. Lanes are sonar rays, then wall segments, then hidden units. Learners never wait for one
+//! another and never share a sum, so learner k alone leaves the same bytes as learner k among thousands.
+//!
+//! A learner is a state machine whose whole state is in its [`learner::layout::Cursor`]. Kernel [`advance`]
+//! moves it on by at most *n* quanta (one trial step, or one replayed transition), so a dispatch can be as
+//! short as a watchdog wants it. Kernel [`mod@evaluate`] runs greedy tests with the nets read-only, and
+//! kernel [`mod@step`] lets a robot carry out given actions.
+//!
+//! # Twins
+//!
+//! Every `shaders/PATH.wgsl` has its CPU twin at `src/PATH.rs`: same functions, same statements in the same
+//! order, same comments on why. Both languages share one memory layout, [`learner::layout`], from which the
+//! WGSL constants and structs are emitted. Results are built from IEEE f32 `+ - *`, comparisons and integers
+//! alone ([`math`]), random numbers are counters ([`math::rng`]), and on Vulkan the SPIR-V is decorated so
+//! that no compiler fuses or re-associates. Hence CPU and GPU agree to the byte, and tests compare bytes.
+//!
+//! # Modules, in the order in which they may use one another
+//!
+//! | stage | modules |
+//! |---|---|
+//! | what the user wrote, checked | [`config`] |
+//! | the floor plan | [`world`] |
+//! | kernels and their memory | [`math`], [`robot`] (simulate), [`skill`] (decide), [`qnet`] (approximate), [`lesson`] (learn), [`mod@advance`], [`mod@evaluate`], [`mod@step`], [`learner`] |
+//! | who demonstrates | [`teacher`] |
+//! | who executes the kernels | [`backend`] |
+//! | run folders | [`record`] |
+//! | arms x seeds -> cohorts -> results | [`experiment`] |
+//! | statistics, figures, the page | [`report`], which reads run folders only |
+//! | commands | [`cli`] |
+//!
+//! Tests enforce the twins and the direction.
+//!
+//! # Where this differs from the first design, and why
+//!
+//! - The teacher has its own module behind the kernels instead of a place in `world`: it moves the robot
+//!   with the kernels' twins, so that it plans for exactly what happens.
+//! - A learner waits before a test until the host has run it: [`mod@evaluate`] takes a workgroup per learner
+//!   *and* test trial, which fills a device far better than one learner's trials in sequence would.
+//! - All learners of a cohort are in one world: its floor plan lies in a uniform buffer, where one load
+//!   serves all lanes.
+//! - `record` stands before `experiment`, which commits cohorts through it.
+#[allow(
+    clippy::needless_range_loop,
+    clippy::approx_constant,
+    clippy::excessive_precision,
+    reason = "twins are written as their shaders are, lane by lane and with the same digits"
+)]
 pub mod advance;
 pub mod backend;
 pub mod cli;
 pub mod config;
+#[allow(
+    clippy::needless_range_loop,
+    clippy::approx_constant,
+    clippy::excessive_precision,
+    reason = "twins are written as their shaders are, lane by lane and with the same digits"
+)]
 pub mod evaluate;
 pub mod experiment;
 pub mod learner;
+#[allow(
+    clippy::needless_range_loop,
+    clippy::approx_constant,
+    clippy::excessive_precision,
+    reason = "twins are written as their shaders are, lane by lane and with the same digits"
+)]
 pub mod lesson;
+#[allow(
+    clippy::needless_range_loop,
+    clippy::approx_constant,
+    clippy::excessive_precision,
+    reason = "twins are written as their shaders are, lane by lane and with the same digits"
+)]
 pub mod math;
+#[allow(
+    clippy::needless_range_loop,
+    clippy::approx_constant,
+    clippy::excessive_precision,
+    reason = "twins are written as their shaders are, lane by lane and with the same digits"
+)]
 pub mod qnet;
 pub mod record;
 pub mod report;
+#[allow(
+    clippy::needless_range_loop,
+    clippy::approx_constant,
+    clippy::excessive_precision,
+    reason = "twins are written as their shaders are, lane by lane and with the same digits"
+)]
 pub mod robot;
+#[allow(
+    clippy::needless_range_loop,
+    clippy::approx_constant,
+    clippy::excessive_precision,
+    reason = "twins are written as their shaders are, lane by lane and with the same digits"
+)]
 pub mod skill;
+#[allow(
+    clippy::needless_range_loop,
+    clippy::approx_constant,
+    clippy::excessive_precision,
+    reason = "twins are written as their shaders are, lane by lane and with the same digits"
+)]
 pub mod step;
 pub mod teacher;
 pub mod world;

@@ -183,7 +183,7 @@ fn the_plan_repeats_the_world() {
     assert_eq!(charging, 2, "two sides of the charger stand against the outer walls");
     for (segment, written) in plan.segment.iter().zip(&world.segments) {
         assert_eq!((segment.ax, segment.ay), (written.a.x, written.a.y));
-        assert_eq!((segment.ax + segment.dx, segment.ay + segment.dy), (written.b.x, written.b.y));
+        assert_eq!((segment.bx, segment.by), (written.b.x, written.b.y));
         assert!((segment.tx.hypot(segment.ty) - 1.0).abs() < 1e-6);
         assert!((segment.length - written.a.distance(written.b)).abs() < 1e-4);
     }

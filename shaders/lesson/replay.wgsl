@@ -77,8 +77,12 @@ fn replay_step(lane: u32, s: u32, base: u32) {
         let taught = settings[s].taught_always == 1u && cursor.replay_taught == 1u;
         let policy = taught || odds[child] > settings[s].policy_threshold * outlook.total;
         let delta = goal - q[child];
-        // All exponent bits set: the number stopped being finite.
-        if (bitcast<u32>(delta) & 0x7f800000u) == 0x7f800000u {
+        // Of all children: one that is never chosen again would not be found out otherwise.
+        var sound = is_number(delta);
+        for (var other = 0u; other < skills[skill].children; other++) {
+            sound = sound && is_number(q[other]);
+        }
+        if !sound {
             cursor.phase = PHASE_FAILED;
         } else if policy {
             backward(lane, skill, s, base, child, delta);

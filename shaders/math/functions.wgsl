@@ -64,10 +64,15 @@ fn square_root(x: f32) -> f32 {
     return select(0.0f, root, x > TINY);
 }
 
+fn is_number(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+}
+
 fn squash(x: f32) -> f32 {
     let e = exponential(-2.0f * abs(x));
     let y = (1.0f - e) * reciprocal(1.0f + e);
-    return select(y, -y, x < 0.0f);
+    let signed = select(y, -y, x < 0.0f);
+    return select(x, signed, is_number(x));
 }
 
 // Sine, then cosine.

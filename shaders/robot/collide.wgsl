@@ -66,7 +66,9 @@ fn sweep(lane: u32, x: f32, y: f32, ux: f32, uy: f32, reach: f32) -> Travel {
             let hit = contact(i, x, y, ux, uy);
             let closer = hit.x < nearest;
             let plug = world.segment[i].charger == 1u && hit.y >= world.dock_cosine;
-            charger = select(charger, u32(plug), closer);
+            // Segments touched at once count together, on one lane as on several.
+            let level = select(charger, charger | u32(plug), hit.x == nearest);
+            charger = select(level, u32(plug), closer);
             nearest = select(nearest, hit.x, closer);
         }
     }

@@ -18,6 +18,9 @@ pub enum Failure {
         /// What to do.
         hint: String,
     },
+    /// Standard output does not take the results.
+    #[error("cannot write to standard output: {0}\nhint: free some space, or send the output elsewhere")]
+    Output(std::io::Error),
     /// A config or world file, or a `--set`, is wrong.
     #[error(transparent)]
     Config(#[from] ConfigError),
@@ -41,7 +44,7 @@ impl Failure {
         match self {
             Self::Usage { .. } | Self::Config(_) | Self::Setup(_) => 2,
             Self::Backend(BackendError::Device { .. }) => 75,
-            Self::Backend(_) | Self::Record(_) | Self::Report(_) => 1,
+            Self::Output(_) | Self::Backend(_) | Self::Record(_) | Self::Report(_) => 1,
         }
     }
 }

@@ -3,14 +3,24 @@
 mod backend;
 mod devices;
 mod failure;
+mod output;
 mod probe;
 mod progress;
 mod report;
 mod run;
 
 pub use failure::Failure;
+pub use output::tell;
 
 use clap::{Parser, Subcommand};
+
+/// The last line of every help text.
+macro_rules! exit_codes {
+    () => {
+        "Exit codes: 0 done; 2 wrong usage or config; 75 give the same command again; 1 anything else."
+    };
+}
+use exit_codes;
 
 /// Trains thousands of small robots at once, each learning its own tree of skills by reinforcement, with
 /// the same bytes on any exact GPU and on the CPU.
@@ -19,8 +29,7 @@ use clap::{Parser, Subcommand};
     name = "skilltree",
     version,
     max_term_width = 110,
-    after_help = "Start with:  skilltree run configs/quick.toml\n\n\
-        Exit codes: 0 done; 2 wrong usage or config; 75 give the same command again; 1 anything else."
+    after_help = concat!("Start with:  skilltree run configs/quick.toml\n\n", exit_codes!())
 )]
 pub struct Cli {
     #[command(subcommand)]

@@ -1,6 +1,7 @@
 //! `skilltree probe`: one robot under given actions, and all that it senses.
 
-use super::Failure;
+use super::output::print;
+use super::{Failure, exit_codes};
 use crate::backend::Backend;
 use crate::backend::cpu::CpuBackend;
 use crate::config::plan::Action;
@@ -16,8 +17,15 @@ use std::path::PathBuf;
 
 /// Puts a robot somewhere, lets it act, and prints its pose and all sensor readings.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Example:\n  \
-    skilltree probe configs/docking.toml --at 60,60,225 --actions \"move+12,turn-15,move+12\" --noise off")]
+#[command(after_help = concat!(
+    "Examples:\n",
+    "  skilltree probe configs/docking.toml --at L2\n",
+    "  skilltree probe configs/docking.toml --at 60,60,225 --actions move+12,turn-15 --json\n\n",
+    "Keys of --json: x, y (inches), heading (degrees, 0 = east, counter-clockwise), room, sonar (24 inches, the first ",
+    "straight ahead, then counter-clockwise every 15 degrees), light (24 of 0 or 1, same order), bumpers (front, ",
+    "left, back, right), compass (degrees), blocked, docked.\n\n",
+    exit_codes!()
+))]
 pub(super) struct Arguments {
     /// The experiment, for its world and noise.
     config: PathBuf,
@@ -25,8 +33,9 @@ pub(super) struct Arguments {
     /// the name of a place of the world.
     #[arg(long, value_name = "X,Y,HEADING", allow_hyphen_values = true)]
     at: String,
-    /// What it does, in order: turn+15, turn-15, turn+60, turn-60, move+12, move-12.
-    #[arg(long, value_name = "ACTIONS", default_value = "", allow_hyphen_values = true)]
+    /// What it does, in order, separated by commas: turn+15, turn-15, turn+60, turn-60 (degrees, counter-clockwise),
+    /// move+12, move-12 (inches).
+    #[arg(long, value_name = "ACTIONS", default_value = "", hide_default_value = true, allow_hyphen_values = true)]
     actions: String,
     /// Whether actuators and sensors are noisy as in the config.
     #[arg(long, value_enum, default_value = "on")]
@@ -83,9 +92,9 @@ pub(super) fn probe(arguments: &Arguments) -> Result<(), Failure> {
                 message: format!("the reading has no JSON form: {error}"),
                 hint: "this is a bug in skilltree: please report it".to_owned(),
             })?;
-            println!("{line}");
+            print(&(line + "\n"))?;
         } else {
-            print!("{}", text_of(action, &reading));
+            print(&text_of(action, &reading))?;
         }
     }
     Ok(())

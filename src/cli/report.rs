@@ -1,14 +1,20 @@
 //! `skilltree report`: figures, tables and the page of complete runs.
 
-use super::Failure;
+use super::output::print;
+use super::{Failure, exit_codes};
 use crate::report;
 use std::path::PathBuf;
 
 /// Draws the figures and writes the self-contained HTML page of complete runs.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Example:\n  skilltree report runs/quick")]
+#[command(after_help = concat!(
+    "Example:\n  skilltree report runs/quick\n\n",
+    "It writes report.html and figures/ into each folder, prints the summary, and computes nothing anew: the same ",
+    "folder always gives the same bytes. `skilltree run` does this at its end by itself.\n\n",
+    exit_codes!()
+))]
 pub(super) struct Arguments {
-    /// Run folders.
+    /// Run folders, as `skilltree run` leaves them.
     #[arg(required = true, value_name = "DIR")]
     folders: Vec<PathBuf>,
 }
@@ -16,10 +22,9 @@ pub(super) struct Arguments {
 pub(super) fn report(arguments: &Arguments) -> Result<(), Failure> {
     for folder in &arguments.folders {
         let written = report::write(folder)?;
-        print!("{}", report::text(folder)?);
-        for path in written {
-            println!("{}", path.display());
-        }
+        print(&report::text(folder)?)?;
+        let paths: String = written.iter().map(|path| format!("{}\n", path.display())).collect();
+        print(&paths)?;
     }
     Ok(())
 }

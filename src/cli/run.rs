@@ -1,30 +1,38 @@
 //! `skilltree run`: trains, evaluates, records, reports.
 
-use super::Failure;
 use super::backend::BackendArguments;
+use super::output::{print, tell};
 use super::progress::RunProgress;
+use super::{Failure, exit_codes};
 use crate::config::plan::Plan;
 use crate::config::{Overrides, load};
-use crate::experiment::group::groups;
+use crate::experiment::group::{Group, groups};
 use crate::experiment::run::{Options, run as run_experiment};
-use crate::record::{Provenance, RunFolder, State, folder};
+use crate::record::{Provenance, RunFolder, State, folder, tables};
 use crate::report;
 use std::collections::BTreeMap;
+use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Trains, tests, records and reports an experiment. The same command again continues where an interrupted
 /// run stopped, or says that the run is complete.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Examples:\n  \
-    skilltree run configs/quick.toml\n  \
-    skilltree run configs/docking.toml --seeds 0..256 --out runs/docking-256\n  \
-    skilltree run configs/docking.toml --set skill.dock.trials=50 --set 'arms=[\"taught-adam\"]'\n\n\
-    No choice of backend, threads, cohort or quanta changes a byte of the results.")]
+#[command(after_help = concat!(
+    "Examples:\n",
+    "  skilltree run configs/quick.toml\n",
+    "  skilltree run configs/docking.toml --seeds 0..256 --out runs/docking-256\n",
+    "  skilltree run configs/docking.toml --set 'arms=[\"taught-adam\"]'\n",
+    "  skilltree run configs/docking.toml --set learning.rate=0.01 --out runs/fast\n\n",
+    "No choice of backend, threads, cohort or quanta changes a byte of the results. A run can be stopped at any time: ",
+    "the same command continues it after the last cohort that was saved.\n\n",
+    exit_codes!()
+))]
 pub(super) struct Arguments {
     /// The experiment: a TOML file.
     config: PathBuf,
-    /// Seeds, instead of the config's: `0..7`, `5`, `1,2,5..9`.
+    /// Seeds, instead of the config's: `0..7` (7 left out), `5`, `1,2,5..9`.
     #[arg(long, value_name = "SEEDS")]
     seeds: Option<String>,
     /// Sets a key of the config, such as `learning.rate=0.01`; may be given several times.
@@ -32,10 +40,10 @@ pub(super) struct Arguments {
     set: Vec<String>,
     #[command(flatten)]
     backend: BackendArguments,
-    /// Learners that train together; found out if not given.
+    /// Learners that train together and are saved together; chosen to suit the backend if not given.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     cohort: Option<u32>,
-    /// The run folder; `runs/` and the config's name if not given.
+    /// The run folder; `runs/NAME` if not given, with the config's name.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
@@ -44,22 +52,33 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let overrides = Overrides { set: arguments.set.clone(), seeds: arguments.seeds.clone() };
     let plan = load(&arguments.config, &overrides)?;
     let out = arguments.out.clone().unwrap_or_else(|| Path::new("runs").join(&plan.name));
-    let run_folder = RunFolder::open(&out, &plan.resolved, &plan.world_text)?;
-    if run_folder.state() == State::Complete {
-        drop(run_folder);
-        println!("{} is complete: nothing is left to run.", out.display());
+    let open = || RunFolder::open(&out, &plan.resolved, &plan.world_text);
+    // A folder that is there is looked at first. A new one is made last: what is refused leaves nothing behind.
+    let there = if is_new(&out) { None } else { Some(open()?) };
+    if there.as_ref().is_some_and(|folder| folder.state() == State::Complete) {
+        drop(there);
+        tell(&format!("{} is complete: nothing is left to run", out.display()));
         return conclude(&out);
     }
     let started = Instant::now();
     let mut backend = arguments.backend.open()?;
-    let (learners, trials) = size(&plan);
-    eprintln!("{}", if plan.title.is_empty() { &plan.name } else { &plan.title });
-    eprintln!("{learners} learners: {} arms, {} seeds; world `{}`", plan.arms.len(), plan.seeds.len(), plan.world.name);
-    eprintln!("backend: {}", backend.describe());
-    if run_folder.state() == State::Partial {
-        eprintln!("continuing the run in {}", out.display());
-    }
     let groups = groups(&plan)?;
+    let run_folder = match there {
+        Some(folder) => folder,
+        None => open()?,
+    };
+    let (learners, trials) = size(&plan);
+    tell(if plan.title.is_empty() { &plan.name } else { &plan.title });
+    tell(&format!("world:    {}", plan.world.name));
+    tell(&format!(
+        "learners: {learners} ({}, {}), {}",
+        count(plan.arms.len(), "arm"),
+        count(plan.seeds.len(), "seed"),
+        memory(&groups)
+    ));
+    tell(&format!("backend:  {}", backend.describe()));
+    let again = if run_folder.state() == State::Partial { ", continued" } else { "" };
+    tell(&format!("folder:   {}{again}", out.display()));
     let options = Options { cohort: arguments.cohort.map(|cohort| cohort as usize) };
     let mut progress = RunProgress::new(learners, trials);
     let provenance = Provenance {
@@ -75,8 +94,16 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let outcome = run_experiment(&plan, &groups, run_folder, backend.as_mut(), options, provenance, &mut progress);
     progress.finish();
     outcome?;
-    eprintln!("trained and tested in {:.1} s", started.elapsed().as_secs_f64());
+    tell(&format!("trained and tested in {:.1} s", started.elapsed().as_secs_f64()));
     conclude(&out)
+}
+
+/// Whether nothing is there yet: no folder, or an empty one.
+fn is_new(out: &Path) -> bool {
+    match fs::read_dir(out) {
+        Ok(mut entries) => entries.next().is_none(),
+        Err(error) => error.kind() == ErrorKind::NotFound,
+    }
 }
 
 /// Learners of a plan, and trials of all of them together.
@@ -85,14 +112,26 @@ fn size(plan: &Plan) -> (usize, u64) {
     (plan.arms.len() * plan.seeds.len(), trials * plan.seeds.len() as u64)
 }
 
+fn count(number: usize, what: &str) -> String {
+    if number == 1 { format!("1 {what}") } else { format!("{number} {what}s") }
+}
+
+/// What one learner takes while it trains: a cohort of them is in memory at a time.
+fn memory(groups: &[Group]) -> String {
+    let most = groups.iter().map(|group| group.shape.bytes_per_learner()).max().unwrap_or(0);
+    format!("{:.1} MB each while training", most as f64 / 1e6)
+}
+
 /// Makes the report of a complete run and says where everything is.
 fn conclude(out: &Path) -> Result<(), Failure> {
     report::write(out)?;
-    print!("{}", report::text(out)?);
-    println!("tables:  {}", out.join("trials.parquet").display());
-    println!("         {}", out.join("evaluations.parquet").display());
-    println!("nets:    {}", out.join("skills").display());
-    println!("config:  {}", out.join(folder::CONFIG).display());
-    println!("report:  {}", out.join(report::PAGE).display());
-    Ok(())
+    print(&report::text(out)?)?;
+    let lines = [
+        ("tables:  ", tables::TRIALS),
+        ("         ", tables::EVALUATIONS),
+        ("nets:    ", "skills"),
+        ("config:  ", folder::CONFIG),
+        ("report:  ", report::PAGE),
+    ];
+    print(&lines.map(|(label, name)| format!("{label}{}\n", out.join(name).display())).concat())
 }

@@ -6,7 +6,7 @@ use crate::learner::build::{Shape, ShapeError};
 use crate::learner::memory::Shared;
 use crate::robot::floor::Floor;
 use crate::teacher::bank::{Demonstration, Teacher, TeacherError, teacher_settings};
-use crate::teacher::planner::Planner;
+use crate::teacher::planner::{PITCH, Planner};
 
 /// One learner of the experiment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -92,6 +92,7 @@ impl Group {
                 &members[0].noise,
                 plan.teacher.discount,
                 plan.teacher.backward_cost,
+                PITCH,
             );
             let teacher = Teacher {
                 shared: &shared,

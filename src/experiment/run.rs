@@ -83,7 +83,7 @@ fn committed(plan: &Plan, folder: &RunFolder) -> Result<BTreeMap<LearnerId, Lear
         let results = decode(&bytes).map_err(|error| RecordError::Damaged {
             path: folder.dir().join("parts").join(&name),
             problem: error.to_string(),
-            hint: "Remove this file and give the same command again: only this part is computed anew",
+            hint: "remove this file and give the same command again: only this part is computed anew",
         })?;
         let known = |id: LearnerId| id.arm < plan.arms.len() && plan.seeds.contains(&id.seed);
         learners.extend(results.into_iter().filter(|result| known(result.id)).map(|result| (result.id, result)));

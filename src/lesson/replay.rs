@@ -7,7 +7,7 @@
 use crate::learner::layout::{LESSON_HEADER, PHASE_FAILED, RECORD_WORDS};
 use crate::learner::memory::{Learner, Scratch};
 use crate::lesson::record::CUT;
-use crate::math::functions::{exponential, ln};
+use crate::math::functions::{exponential, is_number, ln};
 use crate::math::rng::{Purpose, Stream, below, draw, unit};
 use crate::qnet::backward::backward;
 use crate::qnet::forward::forward;
@@ -105,8 +105,12 @@ pub fn replay_step(learner: &mut Learner<'_>, scratch: &mut Scratch, base: u32) 
         let taught = settings.taught_always == 1 && learner.cursor.replay_taught == 1;
         let policy = taught || scratch.odds[child as usize] > settings.policy_threshold * outlook.total;
         let delta = goal - scratch.q[child as usize];
-        // All exponent bits set: the number stopped being finite.
-        if (delta.to_bits() & 0x7f80_0000) == 0x7f80_0000 {
+        // Of all children: one that is never chosen again would not be found out otherwise.
+        let mut sound = is_number(delta);
+        for other in 0..skill.children as usize {
+            sound = sound && is_number(scratch.q[other]);
+        }
+        if !sound {
             learner.cursor.phase = PHASE_FAILED;
         } else if policy {
             backward(learner.nets, scratch, skill, settings, base, child, delta);

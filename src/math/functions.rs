@@ -78,12 +78,20 @@ pub fn square_root(x: f32) -> f32 {
     if x > TINY { root } else { 0.0 }
 }
 
-/// The nets' symmetric sigmoid, tanh(`x`). Absolute error below 3e-7.
+/// Whether `x` is neither infinite nor NaN: these have all exponent bits set.
+#[inline(always)]
+pub fn is_number(x: f32) -> bool {
+    (x.to_bits() & 0x7f80_0000) != 0x7f80_0000
+}
+
+/// The nets' symmetric sigmoid, tanh(`x`). Absolute error below 3e-7. What is no number is handed on, so that it is
+/// found out and not taken for 1.
 #[inline(always)]
 pub fn squash(x: f32) -> f32 {
     let e = exponential(-2.0 * x.abs());
     let y = (1.0 - e) * reciprocal(1.0 + e);
-    if x < 0.0 { -y } else { y }
+    let signed = if x < 0.0 { -y } else { y };
+    if is_number(x) { signed } else { x }
 }
 
 /// Sine and cosine of an angle in degrees, 0 to 720. Exact at multiples of 90.
@@ -157,6 +165,7 @@ mod tests {
             assert!((f64::from(squash(x)) - f64::from(x).tanh()).abs() < 3.0e-7, "tanh({x})");
         }
         assert_eq!(squash(0.0), 0.0);
+        assert!(squash(f32::NAN).is_nan() && squash(f32::INFINITY) == f32::INFINITY && squash(f32::MAX) < 1.01);
     }
 
     #[test]

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, thiserror::Error)]
 pub enum RecordError {
     /// The output folder cannot be made or written to.
-    #[error("{}: cannot write the run folder: {source}. Choose a writable place with --out", path.display())]
+    #[error("{}: cannot write the run folder: {source}\nhint: choose a writable place with --out", path.display())]
     Unwritable {
         /// The folder.
         path: PathBuf,
@@ -16,7 +16,7 @@ pub enum RecordError {
     },
     /// A file was not written; what was there before still is.
     #[error(
-        "{}: not committed: {source}. The earlier state is intact: free some space or fix the permissions, \
+        "{}: not committed: {source}\nhint: the earlier state is intact: free some space or fix the permissions, \
          then give the same command again",
         path.display()
     )]
@@ -28,7 +28,7 @@ pub enum RecordError {
     },
     /// A file was put in place, but the disk did not confirm that it would survive a power cut.
     #[error(
-        "{}: committed, but the disk did not confirm it: {source}. Give the same command again to verify what is there",
+        "{}: committed, but the disk did not confirm it: {source}\nhint: give the same command again to verify what is there",
         path.display()
     )]
     DurabilityUnknown {
@@ -38,7 +38,7 @@ pub enum RecordError {
         source: io::Error,
     },
     /// A file or folder exists but cannot be read.
-    #[error("{}: cannot read: {source}. Check that it exists and its permissions", path.display())]
+    #[error("{}: cannot read: {source}\nhint: check that it exists, that it is not something else, and its permissions", path.display())]
     Unreadable {
         /// The file or folder.
         path: PathBuf,
@@ -46,14 +46,14 @@ pub enum RecordError {
         source: io::Error,
     },
     /// Another process is writing here.
-    #[error("{}: another skilltree process is working here. Wait for it, or choose another --out", path.display())]
+    #[error("{}: another skilltree process is working here\nhint: wait for it, or choose another --out", path.display())]
     Busy {
         /// The folder.
         path: PathBuf,
     },
     /// The folder holds something that skilltree did not write.
     #[error(
-        "{}: not a skilltree run folder (it holds `{found}`). Nothing was touched: choose an empty or new folder",
+        "{}: not a skilltree run folder (it holds `{found}`)\nhint: nothing was touched; choose an empty or new folder",
         path.display()
     )]
     Foreign {
@@ -62,9 +62,17 @@ pub enum RecordError {
         /// Something in it that is not ours.
         found: String,
     },
+    /// There is no run folder to read.
+    #[error("{}: no run folder{found}\nhint: name a folder that `skilltree run` has written, such as runs/quick", path.display())]
+    NoRun {
+        /// What was named.
+        path: PathBuf,
+        /// What is there instead, in brackets, or nothing.
+        found: String,
+    },
     /// The folder belongs to a run with other settings.
     #[error(
-        "{}: holds a run with another {file}. Nothing was touched: choose another --out, or remove the folder yourself",
+        "{}: holds a run with another {file}\nhint: nothing was touched; choose another --out, or remove the folder yourself",
         path.display()
     )]
     OtherExperiment {
@@ -75,7 +83,7 @@ pub enum RecordError {
     },
     /// The run was interrupted, or is still going on.
     #[error(
-        "{}: the run is not complete (no manifest.json). Give the same `skilltree run` command again to finish it",
+        "{}: the run is not complete (no manifest.json)\nhint: give the same `skilltree run` command again to finish it",
         path.display()
     )]
     Unfinished {
@@ -83,7 +91,7 @@ pub enum RecordError {
         path: PathBuf,
     },
     /// The folder was written by a version with another layout.
-    #[error("{}: format {found}, but this program reads format {known}. Use the skilltree version that wrote it", path.display())]
+    #[error("{}: format {found}, but this program reads format {known}\nhint: use the skilltree version that wrote it", path.display())]
     Format {
         /// The file that says so.
         path: PathBuf,
@@ -93,7 +101,7 @@ pub enum RecordError {
         known: u32,
     },
     /// A file's content is wrong.
-    #[error("{}: damaged: {problem}. {hint}", path.display())]
+    #[error("{}: damaged: {problem}\nhint: {hint}", path.display())]
     Damaged {
         /// The file.
         path: PathBuf,
@@ -103,7 +111,7 @@ pub enum RecordError {
         hint: &'static str,
     },
     /// The caller asked for something that no run folder can hold: a bug in skilltree.
-    #[error("{what}: {problem}. This is a bug in skilltree: please report it")]
+    #[error("{what}: {problem}\nhint: this is a bug in skilltree: please report it")]
     Invalid {
         /// The name or table that was to be written.
         what: String,
@@ -113,7 +121,7 @@ pub enum RecordError {
 }
 
 /// Hint for results that fail verification.
-pub(crate) const RERUN: &str = "Copy the folder again, or move it away and repeat the run";
+pub(crate) const RERUN: &str = "copy the folder again, or move it away and repeat the run";
 
 impl RecordError {
     pub(crate) fn damaged(path: &Path, problem: impl Into<String>) -> Self {

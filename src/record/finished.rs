@@ -20,7 +20,7 @@ impl FinishedRun {
     /// Opens and verifies a run folder.
     ///
     /// # Errors
-    /// [`RecordError::Unfinished`] without a manifest, [`RecordError::Format`] for another layout, otherwise
+    /// [`RecordError::NoRun`] or [`RecordError::Unfinished`] without a manifest, [`RecordError::Format`] for another layout, otherwise
     /// [`RecordError::Damaged`] or [`RecordError::Unreadable`] with the file that is missing, cut or altered.
     pub fn read(dir: &Path) -> Result<Self, RecordError> {
         let path = dir.join(Manifest::NAME);
@@ -28,9 +28,8 @@ impl FinishedRun {
             Err(error) if error.kind() == io::ErrorKind::NotFound && dir.join(CONFIG).exists() => {
                 return Err(RecordError::Unfinished { path: dir.into() });
             }
-            Err(error) if error.kind() == io::ErrorKind::NotFound && dir.is_dir() => {
-                let found = super::atomic::list(dir)?.into_iter().next().unwrap_or_else(|| "nothing".into());
-                return Err(RecordError::Foreign { path: dir.into(), found });
+            Err(error) if matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) => {
+                return Err(RecordError::NoRun { path: dir.into(), found: what_is(dir)? });
             }
             other => other.map_err(RecordError::unreadable(&path))?,
         };
@@ -77,6 +76,18 @@ impl FinishedRun {
         let bytes = fs::read(&path).map_err(RecordError::unreadable(&path))?;
         String::from_utf8(bytes).map_err(|_| RecordError::damaged(&path, "not UTF-8"))
     }
+}
+
+/// What is where a run folder was expected, in brackets.
+fn what_is(path: &Path) -> Result<String, RecordError> {
+    Ok(match fs::metadata(path) {
+        Err(_) => " (there is no such folder)".to_owned(),
+        Ok(data) if !data.is_dir() => " (it is a file)".to_owned(),
+        Ok(_) => match super::atomic::list(path)?.first() {
+            Some(name) => format!(" (it holds `{name}`, and no manifest.json)"),
+            None => " (it is empty)".to_owned(),
+        },
+    })
 }
 
 fn verify(path: &Path, stated: &FileDigest) -> Result<(), RecordError> {

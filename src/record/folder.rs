@@ -125,7 +125,7 @@ impl RunFolder {
             Some(problem) => Err(RecordError::Damaged {
                 path,
                 problem: problem.into(),
-                hint: "Remove this file and give the same command again: only this part is computed anew",
+                hint: "remove this file and give the same command again: only this part is computed anew",
             }),
             None => Ok(Some(bytes.split_off(PART_HEADER))),
         }

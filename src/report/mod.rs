@@ -32,13 +32,13 @@ pub enum ReportError {
     #[error(transparent)]
     Record(#[from] RecordError),
     /// The run folder's floor plan cannot be read: another version of skilltree made the run.
-    #[error("{0}\nThe run was made by another version of skilltree: use that one")]
+    #[error("{0}\nnote: the run was made by another version of skilltree: use that one")]
     World(#[from] ConfigError),
     /// A figure could not be turned into PNG.
-    #[error("a figure could not be drawn: {0}. This is a bug in skilltree: please report it")]
+    #[error("a figure could not be drawn: {0}\nhint: this is a bug in skilltree: please report it")]
     Drawing(String),
     /// The page's template failed.
-    #[error("the page could not be written: {0}. This is a bug in skilltree: please report it")]
+    #[error("the page could not be written: {0}\nhint: this is a bug in skilltree: please report it")]
     Page(String),
 }
 

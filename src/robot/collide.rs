@@ -83,7 +83,9 @@ pub fn sweep(floor: &Floor, x: f32, y: f32, ux: f32, uy: f32, reach: f32) -> Tra
             let (distance, cosine) = contact(block, lane, x, y, ux, uy);
             let closer = distance < nearest[lane];
             let plug = block.charger[lane] == 1 && cosine >= floor.plan.dock_cosine;
-            charger[lane] = if closer { u32::from(plug) } else { charger[lane] };
+            // Segments touched at once count together, on one lane as on several.
+            let level = if distance == nearest[lane] { charger[lane] | u32::from(plug) } else { charger[lane] };
+            charger[lane] = if closer { u32::from(plug) } else { level };
             nearest[lane] = if closer { distance } else { nearest[lane] };
         }
     }

@@ -11,8 +11,8 @@ use crate::world::{Pose, World};
 use glam::Vec2;
 use rayon::prelude::*;
 
-/// Distance of grid points, inches.
-const PITCH: f32 = 5.0;
+/// Distance of grid points, inches. Ours; tests plan with others, at which moves end on grid points.
+pub const PITCH: f32 = 5.0;
 /// Headings of the grid.
 const HEADINGS: usize = 24;
 /// Degrees between them.
@@ -25,6 +25,7 @@ const MOST_SWEEPS: usize = 2_000;
 /// The solved task: how good every pose is, and what to do there.
 #[derive(Debug, Clone)]
 pub struct Planner {
+    pitch: f32,
     columns: usize,
     rows: usize,
     free: Vec<bool>,
@@ -47,13 +48,21 @@ struct Outcome {
 }
 
 impl Planner {
-    /// Plans a skill. `discount` is the teacher's own; `backward_cost`, in reward units, keeps it from
-    /// backing up where turning serves as well.
-    pub fn new(world: &World, floor: &Floor, skill: &Skill, noise: &Noise, discount: f32, backward_cost: f32) -> Self {
-        let columns = (world.size.x / PITCH) as usize + 1;
-        let rows = (world.size.y / PITCH) as usize + 1;
+    /// Plans a skill on a grid of `pitch` inches. `discount` is the teacher's own; `backward_cost`, in reward
+    /// units, keeps it from backing up where turning serves as well.
+    pub fn new(
+        world: &World,
+        floor: &Floor,
+        skill: &Skill,
+        noise: &Noise,
+        discount: f32,
+        backward_cost: f32,
+        pitch: f32,
+    ) -> Self {
+        let columns = (world.size.x / pitch) as usize + 1;
+        let rows = (world.size.y / pitch) as usize + 1;
         let free = (0..columns * rows)
-            .map(|i| world.is_free(Vec2::new((i % columns) as f32 * PITCH, (i / columns) as f32 * PITCH)))
+            .map(|i| world.is_free(Vec2::new((i % columns) as f32 * pitch, (i / columns) as f32 * pitch)))
             .collect();
         let origins = if skill.ends & PASSED_DOOR == 0 && skill.reward[Event::PassedDoor as usize] == 0.0 {
             1
@@ -61,6 +70,7 @@ impl Planner {
             world.rooms.len()
         };
         let mut planner = Self {
+            pitch,
             columns,
             rows,
             free,
@@ -130,8 +140,8 @@ impl Planner {
         let blends: Vec<Vec<Blend>> = points
             .par_iter()
             .map(|point| {
-                let x = (point % self.columns) as f32 * PITCH;
-                let y = (point / self.columns) as f32 * PITCH;
+                let x = (point % self.columns) as f32 * self.pitch;
+                let y = (point / self.columns) as f32 * self.pitch;
                 let mut blends = Vec::with_capacity(HEADINGS * moves.len() * self.slips.len());
                 for heading in 0..HEADINGS {
                     let pose = Pose { x, y, heading: heading as f32 * HEADING_STEP };
@@ -217,10 +227,10 @@ impl Planner {
 
     /// The four grid points round a pose with their shares; points that no robot can take have none.
     fn corners(&self, pose: Pose) -> [(usize, f32); 4] {
-        let column = ((pose.x / PITCH) as usize).min(self.columns - 2);
-        let row = ((pose.y / PITCH) as usize).min(self.rows - 2);
-        let dx = pose.x / PITCH - column as f32;
-        let dy = pose.y / PITCH - row as f32;
+        let column = ((pose.x / self.pitch) as usize).min(self.columns - 2);
+        let row = ((pose.y / self.pitch) as usize).min(self.rows - 2);
+        let dx = pose.x / self.pitch - column as f32;
+        let dy = pose.y / self.pitch - row as f32;
         let first = row * self.columns + column;
         let mut corners = [
             (first, (1.0 - dx) * (1.0 - dy)),

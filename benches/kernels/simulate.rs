@@ -1,0 +1,176 @@
+//! The simulator step as one would write it without lanes: one ray, one segment at a time.
+//!
+//! The same formulas in the same order as the twins, so that results can be compared as bytes; the loops are
+//! the other way round, and what cannot matter is skipped.
+
+use skilltree::learner::layout::{Robot, Segment, WorldPlan};
+use skilltree::math::functions::{exponential, reciprocal, reciprocal_sqrt, sin_cos, square_root, wrap_degrees};
+use skilltree::math::rng::{Purpose, Stream, draw, noise};
+use skilltree::robot::collide::{BUMPER_GAP, RADIUS};
+use skilltree::robot::motion::{BACKWARD, COLLISION, DOCKED, FORWARD, turn_of};
+use skilltree::robot::sonar::{SONAR_LIMIT, reading};
+use skilltree::skill::observe::{DICE_ACTUATOR, DICE_COMPASS};
+
+/// The farthest that contact is looked for, inches.
+const FAR: f32 = 1.0e6;
+
+/// One robot carries out its action and senses.
+pub(crate) fn step(robot: &mut Robot, world: &WorldPlan, atlas: &[u32]) {
+    let stream = Stream {
+        key: [robot.run_seed, robot.robot_seed],
+        skill: 0,
+        trial: 0,
+        step: robot.step,
+        purpose: Purpose::Given as u32,
+    };
+    let slip_words = draw(stream, DICE_ACTUATOR as u32);
+    let slip = robot.noise_actuator * noise(robot.noise_kind, slip_words[0], slip_words[1]) + 1.0;
+    act(robot, world, slip);
+    sense(robot, world, atlas, stream);
+    robot.step += 1;
+}
+
+fn act(robot: &mut Robot, world: &WorldPlan, slip: f32) {
+    robot.heading = wrap_degrees(robot.heading + turn_of(robot.action) * slip);
+    robot.events = 0;
+    let (sine, cosine) = sin_cos(robot.heading);
+    let segments = &world.segment[..world.segments as usize];
+    if robot.action == FORWARD || robot.action == BACKWARD {
+        let sign = if robot.action == FORWARD { 1.0 } else { -1.0 };
+        let (ux, uy) = (sign * cosine, sign * sine);
+        let reach = (12.0 * slip).max(0.0);
+        let (mut nearest, mut plugged) = (FAR, false);
+        for segment in segments {
+            let (distance, aim) = contact(segment, robot.x, robot.y, ux, uy);
+            let plug = segment.charger == 1 && aim >= world.dock_cosine;
+            if distance < nearest {
+                (nearest, plugged) = (distance, plug);
+            } else if distance == nearest {
+                plugged |= plug;
+            }
+        }
+        let blocked = nearest < reach;
+        let travel = if blocked { nearest } else { reach };
+        robot.x += ux * travel;
+        robot.y += uy * travel;
+        robot.events = match (blocked, plugged && robot.action == FORWARD) {
+            (true, true) => DOCKED,
+            (true, false) => COLLISION,
+            (false, _) => 0,
+        };
+    }
+    robot.bumpers = 0;
+    for segment in segments {
+        let (wx, wy) = (robot.x - segment.ax, robot.y - segment.ay);
+        let along = (segment.tx * wx + segment.ty * wy).max(0.0).min(segment.length);
+        let (px, py) = (segment.tx * along - wx, segment.ty * along - wy);
+        if px * px + py * py < (RADIUS + BUMPER_GAP) * (RADIUS + BUMPER_GAP) {
+            let front = px * cosine + py * sine;
+            let left = py * cosine - px * sine;
+            robot.bumpers |= match (front.abs() >= left.abs(), front > 0.0, left > 0.0) {
+                (true, true, _) => 1,
+                (true, false, _) => 4,
+                (false, _, true) => 2,
+                (false, _, false) => 8,
+            };
+        }
+    }
+}
+
+fn contact(segment: &Segment, x: f32, y: f32, ux: f32, uy: f32) -> (f32, f32) {
+    let (wx, wy) = (x - segment.ax, y - segment.ay);
+    let side = segment.tx * wy - segment.ty * wx;
+    let drift = segment.tx * uy - segment.ty * ux;
+    let closing = if side < 0.0 { drift } else { -drift };
+    let (mut reach, mut aim) = (FAR, closing);
+    if closing > 1.0e-7 {
+        let gap = ((side.abs() - RADIUS) * reciprocal(closing)).max(0.0);
+        let along = (segment.tx * wx + segment.ty * wy) + (segment.tx * ux + segment.ty * uy) * gap;
+        if along >= 0.0 && along <= segment.length {
+            reach = gap;
+        }
+    }
+    for (ex, ey) in [(-wx, -wy), (segment.bx - x, segment.by - y)] {
+        let ahead = ex * ux + ey * uy;
+        let across = ex * uy - ey * ux;
+        let chord = RADIUS * RADIUS - across * across;
+        if chord > 0.0 && ahead > 0.0 {
+            let back = square_root(chord);
+            let gap = (ahead - back).max(0.0);
+            if gap < reach {
+                (reach, aim) = (gap, back * 0.083_333_336);
+            }
+        }
+    }
+    (reach, aim)
+}
+
+fn sense(robot: &mut Robot, world: &WorldPlan, atlas: &[u32], stream: Stream) {
+    let (x, y) = (robot.x, robot.y);
+    let (sine, cosine) = sin_cos(robot.heading);
+    let column = ((x * 0.083_333_336) as u32).min(world.cell_columns - 1);
+    let row = ((y * 0.083_333_336) as u32).min(world.cell_rows - 1);
+    let cell = (world.cell_starts + row * world.cell_columns + column) as usize;
+    let near = &atlas[atlas[cell] as usize..atlas[cell + 1] as usize];
+    let seen = world.lit == 1 && in_sight(world, x, y);
+    let (lx, ly) = (world.light_x - x, world.light_y - y);
+    let distance2 = (lx * lx + ly * ly).max(1.0);
+    let (nearness, falloff) = (reciprocal_sqrt(distance2), world.light_range2 * reciprocal(distance2));
+    let mut readings = [0_u32; 24];
+    let mut lit = 0;
+    for (ray, slot) in readings.iter_mut().enumerate() {
+        let words = draw(stream, ray as u32);
+        let (ray_sine, ray_cosine) = sin_cos(ray as f32 * 15.0);
+        let ux = cosine * ray_cosine - sine * ray_sine;
+        let uy = sine * ray_cosine + cosine * ray_sine;
+        let error = robot.noise_sonar * noise(robot.noise_kind, words[0], words[1]) + 1.0;
+        *slot = reading(cast(world, near, x, y, ux, uy), error);
+        if seen {
+            let aim = (ux * lx + uy * ly) * nearness;
+            let bright = falloff * exponential(14.590_25 * (aim - 1.0));
+            let glow = bright * (robot.noise_light * noise(robot.noise_kind, words[2], words[3]) + 1.0);
+            lit |= u32::from(glow > 1.0) << ray;
+        }
+    }
+    for (word, four) in readings.as_chunks::<4>().0.iter().enumerate() {
+        robot.record[word] = four[0] | four[1] << 8 | four[2] << 16 | four[3] << 24;
+    }
+    robot.record[6] = lit | robot.bumpers << 24;
+    let words = draw(stream, DICE_COMPASS as u32);
+    let error = noise(robot.noise_kind, words[0], words[1]);
+    robot.record[7] = wrap_degrees(robot.heading + robot.noise_compass * error).to_bits();
+}
+
+fn cast(world: &WorldPlan, near: &[u32], x: f32, y: f32, ux: f32, uy: f32) -> f32 {
+    let (mut over_best, mut under_best) = (SONAR_LIMIT, 1.0);
+    for index in near {
+        let segment = &world.segment[*index as usize];
+        let (ax, ay) = (segment.ax - x, segment.ay - y);
+        let (bx, by) = (segment.bx - x, segment.by - y);
+        if (ax * uy - ay * ux > 0.0) == (bx * uy - by * ux > 0.0) {
+            continue;
+        }
+        let (dx, dy) = (segment.bx - segment.ax, segment.by - segment.ay);
+        let over = ax * dy - ay * dx;
+        let under = ux * dy - uy * dx;
+        let (over, under) = if under < 0.0 { (-over, -under) } else { (over, under) };
+        if over >= 0.0 && over * under_best < over_best * under {
+            (over_best, under_best) = (over, under);
+        }
+    }
+    over_best * reciprocal(under_best)
+}
+
+fn in_sight(world: &WorldPlan, x: f32, y: f32) -> bool {
+    let (lx, ly) = (world.light_x - x, world.light_y - y);
+    !world.segment[..world.segments as usize].iter().any(|segment| {
+        let (ax, ay) = (segment.ax - x, segment.ay - y);
+        let (bx, by) = (segment.bx - x, segment.by - y);
+        let crosses = (ax * ly - ay * lx > 0.0) != (bx * ly - by * lx > 0.0);
+        let (dx, dy) = (segment.bx - segment.ax, segment.by - segment.ay);
+        let over = ax * dy - ay * dx;
+        let under = lx * dy - ly * dx;
+        let over = if under < 0.0 { -over } else { over };
+        segment.charger == 0 && crosses && over >= 0.0 && over < under.abs()
+    })
+}

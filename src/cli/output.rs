@@ -1,0 +1,18 @@
+//! Results go to standard output, everything else to standard error; neither ever makes the program panic.
+
+use super::Failure;
+use std::io::{ErrorKind, Write, stderr, stdout};
+
+/// Prints results. A reader that has seen enough, such as `head`, is no error.
+pub(super) fn print(text: &str) -> Result<(), Failure> {
+    let mut out = stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::Output(error)),
+        _ => Ok(()),
+    }
+}
+
+/// Tells the user something on a line of its own. There is nobody to tell if that fails.
+pub fn tell(text: &str) {
+    let _ = writeln!(stderr(), "{text}");
+}

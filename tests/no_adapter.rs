@@ -1,0 +1,29 @@
+//! Where there is no GPU, asking for one is refused with a hint, and nothing is left behind.
+
+mod support;
+
+use support::{skilltree, tiny, tree};
+use tempfile::TempDir;
+
+#[test]
+fn a_gpu_that_is_not_there_is_refused() {
+    let dir = TempDir::new().unwrap();
+    let out = dir.path().join("run");
+    let mut line = skilltree(std::path::Path::new(env!("CARGO_MANIFEST_DIR")));
+    line.args(["run", "configs/quick.toml", "--backend", "gpu", "--out"]).arg(&out);
+    let output = line
+        .env("VK_DRIVER_FILES", "/nonexistent")
+        .env("VK_ICD_FILENAMES", "/nonexistent")
+        .args(["--set", "skill.dock.trials=1", "--seeds", "0"])
+        .output()
+        .unwrap();
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    assert!(message.contains("error: ") && message.contains("\nhint: "), "{message}");
+    assert!(!message.contains("panicked"), "{message}");
+    assert!(output.stdout.is_empty() && tree(dir.path()).is_empty(), "{message}");
+    // The CPU backend does not look for one.
+    let mut line = tiny(&out, &["--seeds", "0", "--set", "arms=['untaught-sgd']"]);
+    let output = line.env("VK_DRIVER_FILES", "/nonexistent").env("VK_ICD_FILENAMES", "/nonexistent").output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
