@@ -27,7 +27,7 @@ fn alone() -> MutexGuard<'static, ()> {
 }
 
 fn gpu(quanta: Option<u32>) -> GpuBackend {
-    GpuBackend::new(&GpuOptions { adapter: None, quanta }).expect("an adapter, if only a software one")
+    GpuBackend::new(&GpuOptions { quanta, ..GpuOptions::default() }).expect("an adapter, if only a software one")
 }
 
 fn docking(seeds: &str) -> (Plan, Group) {
@@ -89,7 +89,9 @@ fn training_leaves_the_same_bytes_on_both_backends() {
     assert!(differences(&on_cpu, &cohort).len() == 4, "training must have changed every buffer");
 
     // How often the learners are interrupted, and beside whom they train, changes nothing.
-    let (interrupted, tests) = trained(&mut self::gpu(Some(3)), cohort);
+    let cut = GpuOptions { quanta: Some(3), shard: Some(4), ..GpuOptions::default() };
+    let mut cut = GpuBackend::new(&cut).expect("an adapter");
+    let (interrupted, tests) = trained(&mut cut, cohort);
     assert_eq!(differences(&on_cpu, &interrupted), []);
     assert_eq!(cpu_tests, tests);
     let (single, _) = trained(&mut gpu, group.cohort(&plan, &learners[3..4]));
@@ -190,7 +192,7 @@ fn the_loop_budget_of_software_adapters_is_seen() {
 #[test]
 fn a_wrong_name_is_refused_with_a_hint() {
     let _alone = alone();
-    let options = GpuOptions { adapter: Some("no such card".to_owned()), quanta: None };
+    let options = GpuOptions { adapter: Some("no such card".to_owned()), ..GpuOptions::default() };
     let error = GpuBackend::new(&options).expect_err("no such adapter");
     let BackendError::Unavailable { message, hint } = error else { panic!("{error}") };
     assert!(message.contains("`no such card`") && message.contains("found `"), "{message}");
