@@ -5,8 +5,10 @@
 
 use bytemuck::Zeroable;
 use skilltree::backend::cpu::CpuBackend;
-use skilltree::backend::gpu::conformance::{ask, compare, questions};
+use skilltree::backend::gpu::conformance::{ask, compare, examine, questions};
 use skilltree::backend::gpu::device::Device;
+use skilltree::backend::gpu::pipeline::Pipeline;
+use skilltree::backend::gpu::source::KERNELS;
 use skilltree::backend::gpu::{GpuBackend, GpuOptions, adapter};
 use skilltree::backend::{Backend, BackendError, Cohort, Stop, Test};
 use skilltree::config::plan::Plan;
@@ -25,7 +27,7 @@ fn alone() -> MutexGuard<'static, ()> {
 }
 
 fn gpu(quanta: Option<u32>) -> GpuBackend {
-    GpuBackend::new(&GpuOptions { adapter: None, quanta }).expect("an adapter, if only a software one")
+    GpuBackend::new(&GpuOptions { quanta, ..GpuOptions::default() }).expect("an adapter, if only a software one")
 }
 
 fn docking(seeds: &str) -> (Plan, Group) {
@@ -87,7 +89,9 @@ fn training_leaves_the_same_bytes_on_both_backends() {
     assert!(differences(&on_cpu, &cohort).len() == 4, "training must have changed every buffer");
 
     // How often the learners are interrupted, and beside whom they train, changes nothing.
-    let (interrupted, tests) = trained(&mut self::gpu(Some(3)), cohort);
+    let cut = GpuOptions { quanta: Some(3), shard: Some(4), ..GpuOptions::default() };
+    let mut cut = GpuBackend::new(&cut).expect("an adapter");
+    let (interrupted, tests) = trained(&mut cut, cohort);
     assert_eq!(differences(&on_cpu, &interrupted), []);
     assert_eq!(cpu_tests, tests);
     let (single, _) = trained(&mut gpu, group.cohort(&plan, &learners[3..4]));
@@ -188,9 +192,38 @@ fn the_loop_budget_of_software_adapters_is_seen() {
 #[test]
 fn a_wrong_name_is_refused_with_a_hint() {
     let _alone = alone();
-    let options = GpuOptions { adapter: Some("no such card".to_owned()), quanta: None };
+    let options = GpuOptions { adapter: Some("no such card".to_owned()), ..GpuOptions::default() };
     let error = GpuBackend::new(&options).expect_err("no such adapter");
     let BackendError::Unavailable { message, hint } = error else { panic!("{error}") };
     assert!(message.contains("`no such card`") && message.contains("found `"), "{message}");
     assert!(hint.contains("mesa-vulkan-drivers") && hint.contains("--backend cpu"), "{hint}");
+}
+
+/// Metal and DX12 take the WGSL as it is. Every kernel compiles that way too, and is never called exact.
+#[test]
+fn kernels_compile_without_passthrough_but_are_not_exact() {
+    let _alone = alone();
+    let adapter = adapter::choose(None, true).expect("an adapter");
+    let device = Device::open_as(&adapter, false).expect("it opens");
+    for kernel in KERNELS {
+        Pipeline::new(&device, *kernel).unwrap_or_else(|error| panic!("{}: {error}", kernel.name));
+    }
+    let verdict = examine(&device).expect("it runs");
+    assert!(!verdict.exact && verdict.reason.is_some());
+    // llvmpipe re-associates what is not decorated: the shapes of the check must show it.
+    if device.info.name.contains("llvmpipe") {
+        let questions = questions(4096);
+        let reason = compare(&questions, &ask(&device, &questions).expect("it runs")).reason;
+        assert!(reason.is_some_and(|reason| reason.contains("differs on")));
+    }
+}
+
+/// A lost device is an error that says so, not a panic and not a hang.
+#[test]
+fn a_lost_device_is_an_error() {
+    let _alone = alone();
+    let device = Device::open(&adapter::choose(None, true).expect("an adapter")).expect("it opens");
+    device.device.destroy();
+    let error = ask(&device, &questions(32)).expect_err("the device is lost");
+    assert!(matches!(error, BackendError::Device { kernel: "probe", .. }), "{error}");
 }

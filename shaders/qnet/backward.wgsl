@@ -15,8 +15,7 @@ fn errors(lane: u32, skill: u32, net: u32, child: u32, delta: f32) -> Errors {
     return Errors(output, output * weight * (1.0f - activation * activation));
 }
 
-fn gradient(lane: u32, skill: u32, child: u32, row: u32, errors: Errors) -> f32 {
-    let count = skills[skill].inputs;
+fn gradient(lane: u32, count: u32, child: u32, row: u32, errors: Errors) -> f32 {
     var slope = errors.hidden;
     if row < count {
         slope = errors.hidden * inputs[row];
@@ -32,37 +31,43 @@ fn gradient(lane: u32, skill: u32, child: u32, row: u32, errors: Errors) -> f32 
 
 fn backward(lane: u32, skill: u32, s: u32, base: u32, child: u32, delta: f32) {
     let net = net_of(skill, base, child);
-    let slab = skills[skill].rows * LANES;
+    let count = skills[skill].inputs;
+    let rows = skills[skill].rows;
+    let slab = rows * LANES;
+    let beta1 = settings[s].beta1;
+    let beta2 = settings[s].beta2;
+    let step = settings[s].rate;
+    let epsilon2 = settings[s].epsilon2;
     let found = errors(lane, skill, net, child, delta);
     if settings[s].optimiser == 1u {
         // Adam (Kingma and Ba, 2015) in its second form, with epsilon under the root: one reciprocal root
         // serves where a root and a division would.
         let clock = base + skills[skill].clock_offset + child;
-        let first = flush(nets[clock] * settings[s].beta1);
-        let second = flush(nets[clock + CLOCK_SECOND] * settings[s].beta2);
-        let rate = settings[s].rate * square_root(1.0f - second) * reciprocal(1.0f - first);
+        let first = flush(nets[clock] * beta1);
+        let second = flush(nets[clock + CLOCK_SECOND] * beta2);
+        let rate = step * square_root(1.0f - second) * reciprocal(1.0f - first);
         storageBarrier();
         workgroupBarrier();
         if lane == 0u {
             nets[clock] = first;
             nets[clock + CLOCK_SECOND] = second;
         }
-        let rest1 = 1.0f - settings[s].beta1;
-        let rest2 = 1.0f - settings[s].beta2;
-        for (var row = 0u; row < skills[skill].rows; row++) {
+        let rest1 = 1.0f - beta1;
+        let rest2 = 1.0f - beta2;
+        for (var row = 0u; row < rows; row++) {
             let at = net + row * LANES + lane;
-            let g = gradient(lane, skill, child, row, found);
-            let mean = flush(settings[s].beta1 * nets[at + slab] + rest1 * g);
-            let square = flush(settings[s].beta2 * nets[at + 2u * slab] + rest2 * (g * g));
+            let g = gradient(lane, count, child, row, found);
+            let mean = flush(beta1 * nets[at + slab] + rest1 * g);
+            let square = flush(beta2 * nets[at + 2u * slab] + rest2 * (g * g));
             nets[at + slab] = mean;
             nets[at + 2u * slab] = square;
-            nets[at] = nets[at] + rate * mean * reciprocal_sqrt(square + settings[s].epsilon2);
+            nets[at] = nets[at] + rate * mean * reciprocal_sqrt(square + epsilon2);
         }
     } else {
-        for (var row = 0u; row < skills[skill].rows; row++) {
+        for (var row = 0u; row < rows; row++) {
             let at = net + row * LANES + lane;
-            let g = gradient(lane, skill, child, row, found);
-            let velocity = flush(settings[s].beta1 * nets[at + slab] + settings[s].rate * g);
+            let g = gradient(lane, count, child, row, found);
+            let velocity = flush(beta1 * nets[at + slab] + step * g);
             nets[at + slab] = velocity;
             nets[at] = nets[at] + velocity;
         }

@@ -40,6 +40,8 @@ pub struct GpuOptions {
     pub adapter: Option<String>,
     /// Quanta of every dispatch, `--quanta N`; else as many as take some 50 ms.
     pub quanta: Option<u32>,
+    /// Most learners in one set of buffers; else as many as fit. No result depends on it.
+    pub shard: Option<usize>,
 }
 
 /// Executes the kernels on an adapter.
@@ -50,6 +52,7 @@ pub struct GpuBackend {
     advance: Stage,
     evaluate: Stage,
     step: Stage,
+    shard: usize,
     loaded: Option<Loaded>,
 }
 
@@ -144,6 +147,7 @@ impl GpuBackend {
             advance: stage(ADVANCE),
             evaluate: stage(EVALUATE),
             step: stage(STEP),
+            shard: options.shard.unwrap_or(usize::MAX).max(1),
             loaded: None,
         })
     }
@@ -191,7 +195,7 @@ impl Backend for GpuBackend {
         self.advance.governor.set_ceiling(most);
         self.evaluate.governor.set_ceiling(most);
         let common = Common::new(&self.device, ADVANCE.name, &cohort.shared)?;
-        let shards = shards::upload(&self.device, &cohort)?;
+        let shards = shards::upload(&self.device, &cohort, self.shard)?;
         let dispatch = self.uniform(ADVANCE.name)?;
         let (pipeline, _) = self.advance.ready(&self.device)?;
         let bindings = shards

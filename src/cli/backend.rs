@@ -42,7 +42,7 @@ impl BackendArguments {
                 hint: "leave --threads out to use one per core".to_owned(),
             });
         }
-        let options = GpuOptions { adapter: self.adapter.clone(), quanta: self.quanta };
+        let options = GpuOptions { adapter: self.adapter.clone(), quanta: self.quanta, shard: None };
         match self.backend {
             Choice::Gpu => Ok(Box::new(GpuBackend::new(&options)?)),
             // An adapter that is asked for by name is wanted, even where `auto` would not choose it.

@@ -34,20 +34,20 @@ pub fn errors(nets: &[f32], scratch: &Scratch, skill: &SkillPlan, net: u32, chil
 
 /// Ascent direction of one row of weights.
 #[inline(always)]
-pub fn gradient(scratch: &Scratch, skill: &SkillPlan, child: u32, row: u32, errors: &Errors) -> Lanes {
+pub fn gradient(scratch: &Scratch, count: u32, child: u32, row: u32, errors: &Errors) -> Lanes {
     let mut slope = errors.hidden;
-    if row < skill.inputs {
+    if row < count {
         let x = scratch.inputs[row as usize];
         for lane in 0..LANES {
             slope[lane] = errors.hidden[lane] * x;
         }
     }
-    if row == skill.inputs + 1 {
+    if row == count + 1 {
         for lane in 0..LANES {
             slope[lane] = errors.output * scratch.hidden[child as usize][lane];
         }
     }
-    if row == skill.inputs + 2 {
+    if row == count + 2 {
         for lane in 0..LANES {
             slope[lane] = if lane == 0 { errors.output } else { 0.0 };
         }
@@ -67,44 +67,50 @@ pub fn backward(
     delta: f32,
 ) {
     let net = net_of(skill, base, child);
-    let slab = skill.rows * LANES as u32;
+    let count = skill.inputs;
+    let rows = skill.rows;
+    let slab = rows * LANES as u32;
+    let beta1 = settings.beta1;
+    let beta2 = settings.beta2;
+    let step = settings.rate;
+    let epsilon2 = settings.epsilon2;
     let found = errors(nets, scratch, skill, net, child, delta);
     if settings.optimiser == 1 {
         // Adam (Kingma and Ba, 2015) in its second form, with epsilon under the root: one reciprocal root
         // serves where a root and a division would.
         let clock = (base + skill.clock_offset + child) as usize;
-        let first = flush(nets[clock] * settings.beta1);
-        let second = flush(nets[clock + CLOCK_SECOND as usize] * settings.beta2);
-        let rate = settings.rate * square_root(1.0 - second) * reciprocal(1.0 - first);
+        let first = flush(nets[clock] * beta1);
+        let second = flush(nets[clock + CLOCK_SECOND as usize] * beta2);
+        let rate = step * square_root(1.0 - second) * reciprocal(1.0 - first);
         nets[clock] = first;
         nets[clock + CLOCK_SECOND as usize] = second;
-        let rest1 = 1.0 - settings.beta1;
-        let rest2 = 1.0 - settings.beta2;
+        let rest1 = 1.0 - beta1;
+        let rest2 = 1.0 - beta2;
         let (weights, moments) = nets[net as usize..(net + 3 * slab) as usize].split_at_mut(slab as usize);
         let (means, squares) = moments.split_at_mut(slab as usize);
         let weights = weights.as_chunks_mut::<LANES>().0;
         let means = means.as_chunks_mut::<LANES>().0;
         let squares = squares.as_chunks_mut::<LANES>().0;
-        for row in 0..skill.rows as usize {
-            let slope = gradient(scratch, skill, child, row as u32, &found);
+        for row in 0..rows as usize {
+            let slope = gradient(scratch, count, child, row as u32, &found);
             for lane in 0..LANES {
                 let g = slope[lane];
-                let mean = flush(settings.beta1 * means[row][lane] + rest1 * g);
-                let square = flush(settings.beta2 * squares[row][lane] + rest2 * (g * g));
+                let mean = flush(beta1 * means[row][lane] + rest1 * g);
+                let square = flush(beta2 * squares[row][lane] + rest2 * (g * g));
                 means[row][lane] = mean;
                 squares[row][lane] = square;
-                weights[row][lane] += rate * mean * reciprocal_sqrt(square + settings.epsilon2);
+                weights[row][lane] += rate * mean * reciprocal_sqrt(square + epsilon2);
             }
         }
     } else {
         let (weights, velocities) = nets[net as usize..(net + 2 * slab) as usize].split_at_mut(slab as usize);
         let weights = weights.as_chunks_mut::<LANES>().0;
         let velocities = velocities.as_chunks_mut::<LANES>().0;
-        for row in 0..skill.rows as usize {
-            let slope = gradient(scratch, skill, child, row as u32, &found);
+        for row in 0..rows as usize {
+            let slope = gradient(scratch, count, child, row as u32, &found);
             for lane in 0..LANES {
                 let g = slope[lane];
-                let velocity = flush(settings.beta1 * velocities[row][lane] + settings.rate * g);
+                let velocity = flush(beta1 * velocities[row][lane] + step * g);
                 velocities[row][lane] = velocity;
                 weights[row][lane] += velocity;
             }

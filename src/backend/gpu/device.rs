@@ -42,7 +42,14 @@ impl Device {
     /// # Errors
     /// Where the driver refuses.
     pub fn open(adapter: &wgpu::Adapter) -> Result<Self, BackendError> {
-        let passthrough = takes_spirv(adapter);
+        Self::open_as(adapter, takes_spirv(adapter))
+    }
+
+    /// Opens an adapter as if it took no SPIR-V where `passthrough` is false, as on Metal and DX12.
+    ///
+    /// # Errors
+    /// Where the driver refuses.
+    pub fn open_as(adapter: &wgpu::Adapter, passthrough: bool) -> Result<Self, BackendError> {
         let offered = adapter.limits();
         let required_limits = wgpu::Limits {
             max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size,

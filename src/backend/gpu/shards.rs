@@ -117,11 +117,11 @@ pub fn fitting(device: &Device, bytes_per_learner: usize) -> usize {
     (host.min(memory) / bytes_per_learner.max(1) as u64).clamp(1, most) as usize
 }
 
-/// Cuts a cohort into shards and uploads them.
+/// Cuts a cohort into shards of at most `shard` learners and uploads them.
 ///
 /// # Errors
 /// [`BackendError::TooLarge`] where a learner exceeds a buffer, or the cohort the memory.
-pub fn upload(device: &Device, cohort: &Cohort) -> Result<Vec<Shard>, BackendError> {
+pub fn upload(device: &Device, cohort: &Cohort, shard: usize) -> Result<Vec<Shard>, BackendError> {
     let learners = cohort.cursors.len();
     let too_large = |message: String| BackendError::TooLarge { learners, message };
     let limits = device.device.limits();
@@ -157,6 +157,7 @@ pub fn upload(device: &Device, cohort: &Cohort) -> Result<Vec<Shard>, BackendErr
             return Err(too_large(format!("they take {needed} MiB, and {free} MiB of memory are free")));
         }
     }
+    let most = most.min(shard);
     let scope = device.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
     let shards = (0..learners.div_ceil(most))
         .map(|shard| Shard::new(device, cohort, shard * most..learners.min((shard + 1) * most)))
