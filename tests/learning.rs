@@ -304,10 +304,10 @@ fn momentum_carries_the_last_change_on() {
     encode(&bench.shared, &mut scratch, &skill);
     forward(&bench.nets, &mut scratch, &skill, 0);
     let start = Net::of(&bench, 2);
-    backward(&mut bench.nets, &scratch, &skill, &bench.settings[0], 0, 2, 0.5);
+    backward(&mut bench.nets, &scratch, &skill, &bench.settings[0], 0, 2, 0.5, bench.settings[0].rate);
     let one = Net::of(&bench, 2);
     // Nothing new to learn: only the momentum moves the weights, half as far.
-    backward(&mut bench.nets, &scratch, &skill, &bench.settings[0], 0, 2, 0.0);
+    backward(&mut bench.nets, &scratch, &skill, &bench.settings[0], 0, 2, 0.0, bench.settings[0].rate);
     let two = Net::of(&bench, 2);
     let moved = |a: &Net, b: &Net| a.0.iter().zip(&b.0).map(|(a, b)| b - a).collect::<Vec<f64>>();
     let first = moved(&start, &one);
