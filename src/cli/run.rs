@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Instant, SystemTime};
 
 /// Trains, tests, records and reports an experiment. The same command again continues where an interrupted
 /// run stopped, or says that the run is complete.
@@ -87,7 +87,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         backend: backend.kind().to_owned(),
         adapter: backend.adapter(),
         seeds: plan.seeds.clone(),
-        started: None,
+        started: Some(humantime::format_rfc3339_seconds(SystemTime::now()).to_string()),
         finished: None,
         notes: BTreeMap::from([("executed by".to_owned(), backend.describe())]),
     };

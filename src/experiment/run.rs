@@ -9,6 +9,7 @@ use crate::backend::{Backend, BackendError};
 use crate::config::plan::Plan;
 use crate::record::{Provenance, RecordError, RunFolder};
 use std::collections::BTreeMap;
+use std::time::SystemTime;
 
 /// Why a run stopped.
 #[derive(Debug, thiserror::Error)]
@@ -71,6 +72,7 @@ pub fn run(
     }
     let places = senses::places(&plan.world, backend)?;
     let results = Results { plan, groups, learners, places };
+    provenance.finished = Some(humantime::format_rfc3339_seconds(SystemTime::now()).to_string());
     folder.finish(results.files()?, provenance)?;
     Ok(())
 }
