@@ -32,7 +32,7 @@ pub enum Failure {
     Backend(#[from] BackendError),
     /// An adapter does not leave the bytes of the CPU.
     #[error(
-        "adapters that differ from the CPU: {differing} of {adapters}\nhint: `--backend cpu` gives the exact results; a newer driver may too",
+        "adapters that differ from the CPU: {differing} of {adapters}\nhint: `--backend cpu` gives the exact results; a newer driver may too"
     )]
     Parity {
         /// Adapters that differ, or failed.
