@@ -48,68 +48,20 @@
 //! - All learners of a cohort are in one world: its floor plan lies in a uniform buffer, where one load
 //!   serves all lanes.
 //! - `record` stands before `experiment`, which commits cohorts through it.
-#[allow(
-    clippy::needless_range_loop,
-    clippy::approx_constant,
-    clippy::excessive_precision,
-    reason = "twins are written as their shaders are, lane by lane and with the same digits"
-)]
 pub mod advance;
 pub mod backend;
 pub mod cli;
 pub mod config;
-#[allow(
-    clippy::needless_range_loop,
-    clippy::approx_constant,
-    clippy::excessive_precision,
-    reason = "twins are written as their shaders are, lane by lane and with the same digits"
-)]
 pub mod evaluate;
 pub mod experiment;
 pub mod learner;
-#[allow(
-    clippy::needless_range_loop,
-    clippy::approx_constant,
-    clippy::excessive_precision,
-    reason = "twins are written as their shaders are, lane by lane and with the same digits"
-)]
 pub mod lesson;
-#[allow(
-    clippy::needless_range_loop,
-    clippy::approx_constant,
-    clippy::excessive_precision,
-    reason = "twins are written as their shaders are, lane by lane and with the same digits"
-)]
 pub mod math;
-#[allow(
-    clippy::needless_range_loop,
-    clippy::approx_constant,
-    clippy::excessive_precision,
-    reason = "twins are written as their shaders are, lane by lane and with the same digits"
-)]
 pub mod qnet;
 pub mod record;
 pub mod report;
-#[allow(
-    clippy::needless_range_loop,
-    clippy::approx_constant,
-    clippy::excessive_precision,
-    reason = "twins are written as their shaders are, lane by lane and with the same digits"
-)]
 pub mod robot;
-#[allow(
-    clippy::needless_range_loop,
-    clippy::approx_constant,
-    clippy::excessive_precision,
-    reason = "twins are written as their shaders are, lane by lane and with the same digits"
-)]
 pub mod skill;
-#[allow(
-    clippy::needless_range_loop,
-    clippy::approx_constant,
-    clippy::excessive_precision,
-    reason = "twins are written as their shaders are, lane by lane and with the same digits"
-)]
 pub mod step;
 pub mod teacher;
 pub mod world;

@@ -57,9 +57,10 @@ fn docking_is_as_published() {
     }
     let learning = |i: usize| &plan.arms[i].skills[0].learning;
     let (adam, sgd, td0) = (learning(0), learning(1), learning(2));
-    assert_eq!(adam.optimiser, Optimiser::Adam { rate: 0.0015, beta1: 0.9, beta2: 0.999, epsilon: 1e-8 });
-    assert_eq!((adam.hidden, adam.init, adam.gamma, adam.lambda), (32, 0.5, 0.9, 0.95));
+    assert_eq!(adam.optimiser, Optimiser::Adam { rate: 0.0015, beta1: 0.9, beta2: 0.999, epsilon: 1e-3 });
+    assert_eq!((adam.hidden, adam.init, adam.gamma, adam.lambda), (32, 0.2, 0.9, 0.95));
     assert_eq!((adam.replays, adam.memory, adam.mean_age, adam.policy_threshold), (60, 300, 100.0, 0.05));
+    assert_eq!((adam.rate_end_share, adam.rate_trials, sgd.rate_end_share), (0.1, 300, 1.0));
     assert!(adam.timeout_terminal && adam.mask_blocked && adam.taught_always);
     assert_eq!(sgd.optimiser, Optimiser::Sgd { rate: 0.15, momentum: 0.0 });
     assert_eq!((sgd.init, sgd.gamma, sgd.lambda, sgd.policy_threshold), (0.2, 0.95, 0.8, 0.001));

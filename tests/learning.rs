@@ -304,10 +304,10 @@ fn momentum_carries_the_last_change_on() {
     encode(&bench.shared, &mut scratch, &skill);
     forward(&bench.nets, &mut scratch, &skill, 0);
     let start = Net::of(&bench, 2);
-    backward(&mut bench.nets, &scratch, &skill, &bench.settings[0], 0, 2, 0.5);
+    backward(&mut bench.nets, &scratch, &skill, &bench.settings[0], 0, 2, 0.5, bench.settings[0].rate);
     let one = Net::of(&bench, 2);
     // Nothing new to learn: only the momentum moves the weights, half as far.
-    backward(&mut bench.nets, &scratch, &skill, &bench.settings[0], 0, 2, 0.0);
+    backward(&mut bench.nets, &scratch, &skill, &bench.settings[0], 0, 2, 0.0, bench.settings[0].rate);
     let two = Net::of(&bench, 2);
     let moved = |a: &Net, b: &Net| a.0.iter().zip(&b.0).map(|(a, b)| b - a).collect::<Vec<f64>>();
     let first = moved(&start, &one);
@@ -447,13 +447,13 @@ fn five_step_returns_are_the_ones_computed_by_hand() {
     let cut = five_steps(CUT, 48.0);
     // The last step earns 0.75 and the bracket is 0: the goal.
     expect(&mut exact(0.0), &goal, 0, [0.25, -0.03125, 0.0, 0.25, 0.75], all, "lambda 0");
-    let half = [0.1103515625, -0.05859375, 0.078125, 0.3125, 0.75];
+    let half = [113.0 / 1024.0, -0.05859375, 0.078125, 0.3125, 0.75];
     expect(&mut exact(0.5), &goal, 0, half, all, "lambda 0.5");
     let full = [-0.015625, -0.03125, 0.1875, 0.375, 0.75];
     expect(&mut exact(1.0), &goal, 0, full, all, "lambda 1");
     expect(&mut exact(1.0), &goal, 1, full, all, "lambda 1, taught");
     // Cut: the last observation's best value, 0.1875, stands for what would have followed.
-    let half_cut = [0.1107177734375, -0.05712890625, 0.083984375, 0.3359375, 0.84375];
+    let half_cut = [907.0 / 8192.0, -117.0 / 2048.0, 0.083984375, 0.3359375, 0.84375];
     expect(&mut exact(0.5), &cut, 0, half_cut, all, "lambda 0.5, cut");
     let full_cut = [-0.009765625, -0.01953125, 0.2109375, 0.421875, 0.84375];
     expect(&mut exact(1.0), &cut, 0, full_cut, all, "lambda 1, cut");
@@ -503,7 +503,7 @@ fn steps_that_are_no_policy_cut_the_chain() {
     // A masked child is not what the best value is about: without child 0 the best in front of the wall is 0.
     let mut masked = goal;
     masked.steps[4].masked = 0;
-    let returns = [0.1083984375, -0.06640625, 0.046875, 0.1875, 0.75];
+    let returns = [111.0 / 1024.0, -0.06640625, 0.046875, 0.1875, 0.75];
     expect(&mut exact(0.5), &masked, 0, returns, all, "masked");
 }
 
@@ -637,9 +637,9 @@ fn children_are_chosen_as_often_as_the_softmax_says() {
         let children = 1 + round % 8;
         let masked = if round % 3 == 0 { (next() * f64::from(children)) as u32 } else { NOBODY };
         let sharp = (next() * 30.0) as f32;
-        let mut scratch = Scratch::default();
         // The children beyond the last would win if they counted.
-        scratch.q = std::array::from_fn(|i| if (i as u32) < children { (next() * 1.8 - 0.9) as f32 } else { 0.99 });
+        let q = std::array::from_fn(|i| if (i as u32) < children { (next() * 1.8 - 0.9) as f32 } else { 0.99 });
+        let mut scratch = Scratch { q, ..Scratch::default() };
         let outlook = weigh(&mut scratch, children, masked, sharp);
         let open = |child: u32| child < children && (child != masked || children == 1);
         let weight = |child: u32| {

@@ -11,7 +11,7 @@ use skilltree::experiment::senses::{SILENT, Senses, floor_only, robot_at};
 use skilltree::learner::layout::{RAYS, Robot};
 use skilltree::learner::memory::Shared;
 use skilltree::math::functions::sin_cos;
-use skilltree::robot::collide::{BUMPER_GAP, RADIUS, bumpers};
+use skilltree::robot::collide::bumpers;
 use skilltree::robot::light::in_sight;
 use skilltree::robot::motion::{BACKWARD, COLLISION, DOCKED, FORWARD, Moved, PASSED_DOOR, move_body};
 use skilltree::robot::sonar::{ranges, rays};
@@ -411,7 +411,7 @@ fn bumpers_feel_four_sectors_within_the_gap() {
 
 #[test]
 fn bumpers_match_the_oracle_at_poses_of_contact() {
-    let reach = f64::from(RADIUS + BUMPER_GAP);
+    let reach = BODY + 0.4;
     for place in slanted() {
         let mut next = stream(14);
         let (mut judged, mut skipped, mut felt) = (0, 0, [0; 4]);

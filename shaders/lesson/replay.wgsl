@@ -85,7 +85,8 @@ fn replay_step(lane: u32, s: u32, base: u32) {
         if !sound {
             cursor.phase = PHASE_FAILED;
         } else if policy {
-            backward(lane, skill, s, base, child, delta);
+            let pace = learning_rate(s, cursor.trial);
+            backward(lane, skill, s, base, child, delta, pace);
             cursor.updates += 1u;
         }
         cursor.next_best = outlook.best;

@@ -29,14 +29,18 @@ fn gradient(lane: u32, count: u32, child: u32, row: u32, errors: Errors) -> f32 
     return slope;
 }
 
-fn backward(lane: u32, skill: u32, s: u32, base: u32, child: u32, delta: f32) {
+fn learning_rate(s: u32, trial: u32) -> f32 {
+    let risen = select(settings[s].rate_trials, trial, trial < settings[s].rate_trials);
+    return settings[s].rate * (1.0f - settings[s].rate_fall * f32(risen));
+}
+
+fn backward(lane: u32, skill: u32, s: u32, base: u32, child: u32, delta: f32, pace: f32) {
     let net = net_of(skill, base, child);
     let count = skills[skill].inputs;
     let rows = skills[skill].rows;
     let slab = rows * LANES;
     let beta1 = settings[s].beta1;
     let beta2 = settings[s].beta2;
-    let step = settings[s].rate;
     let epsilon2 = settings[s].epsilon2;
     let found = errors(lane, skill, net, child, delta);
     if settings[s].optimiser == 1u {
@@ -45,7 +49,7 @@ fn backward(lane: u32, skill: u32, s: u32, base: u32, child: u32, delta: f32) {
         let clock = base + skills[skill].clock_offset + child;
         let first = flush(nets[clock] * beta1);
         let second = flush(nets[clock + CLOCK_SECOND] * beta2);
-        let rate = step * square_root(1.0f - second) * reciprocal(1.0f - first);
+        let rate = pace * square_root(1.0f - second) * reciprocal(1.0f - first);
         storageBarrier();
         workgroupBarrier();
         if lane == 0u {
@@ -67,7 +71,7 @@ fn backward(lane: u32, skill: u32, s: u32, base: u32, child: u32, delta: f32) {
         for (var row = 0u; row < rows; row++) {
             let at = net + row * LANES + lane;
             let g = gradient(lane, count, child, row, found);
-            let velocity = flush(beta1 * nets[at + slab] + step * g);
+            let velocity = flush(beta1 * nets[at + slab] + pace * g);
             nets[at + slab] = velocity;
             nets[at] = nets[at] + velocity;
         }

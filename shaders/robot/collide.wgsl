@@ -15,6 +15,18 @@ struct Travel {
     connected: bool,
 }
 
+// Distance at which the rim meets a point at (`ex`, `ey`) from the centre, `FAR` if it never does, and how
+// far the centre then still is behind the point.
+fn meet(ex: f32, ey: f32, ux: f32, uy: f32) -> vec2<f32> {
+    let ahead = ex * ux + ey * uy;
+    let across = ex * uy - ey * ux;
+    let chord = RADIUS * RADIUS - across * across;
+    let back = square_root(chord);
+    let gap = ahead - back;
+    let reach = select(0.0f, gap, gap > 0.0f);
+    return vec2<f32>(select(FAR, reach, chord > 0.0f && ahead > 0.0f), back);
+}
+
 // Distance to contact with one segment, and the cosine between the travel and the contact point.
 fn contact(i: u32, x: f32, y: f32, ux: f32, uy: f32) -> vec2<f32> {
     let wx = x - world.segment[i].ax;
@@ -34,26 +46,14 @@ fn contact(i: u32, x: f32, y: f32, ux: f32, uy: f32) -> vec2<f32> {
     var reach = select(FAR, line_reach, line_hit);
     var cosine = closing;
     // The end points: the disc's rim meets a point.
-    let ex = world.segment[i].bx - x;
-    let ey = world.segment[i].by - y;
-    let ahead_a = -wx * ux - wy * uy;
-    let across_a = wx * uy - wy * ux;
-    let chord_a = RADIUS * RADIUS - across_a * across_a;
-    let back_a = square_root(chord_a);
-    let gap_a = ahead_a - back_a;
-    let reach_a = select(0.0f, gap_a, gap_a > 0.0f);
-    let hit_a = chord_a > 0.0f && ahead_a > 0.0f && length >= 0.0f && reach_a < reach;
-    cosine = select(cosine, back_a * INVERSE_RADIUS, hit_a);
-    reach = select(reach, reach_a, hit_a);
-    let ahead_b = ex * ux + ey * uy;
-    let across_b = ex * uy - ey * ux;
-    let chord_b = RADIUS * RADIUS - across_b * across_b;
-    let back_b = square_root(chord_b);
-    let gap_b = ahead_b - back_b;
-    let reach_b = select(0.0f, gap_b, gap_b > 0.0f);
-    let hit_b = chord_b > 0.0f && ahead_b > 0.0f && length >= 0.0f && reach_b < reach;
-    cosine = select(cosine, back_b * INVERSE_RADIUS, hit_b);
-    reach = select(reach, reach_b, hit_b);
+    let meet_a = meet(-wx, -wy, ux, uy);
+    let hit_a = length >= 0.0f && meet_a.x < reach;
+    cosine = select(cosine, meet_a.y * INVERSE_RADIUS, hit_a);
+    reach = select(reach, meet_a.x, hit_a);
+    let meet_b = meet(world.segment[i].bx - x, world.segment[i].by - y, ux, uy);
+    let hit_b = length >= 0.0f && meet_b.x < reach;
+    cosine = select(cosine, meet_b.y * INVERSE_RADIUS, hit_b);
+    reach = select(reach, meet_b.x, hit_b);
     return vec2<f32>(reach, cosine);
 }
 

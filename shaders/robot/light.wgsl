@@ -19,15 +19,9 @@ fn in_sight(lane: u32, x: f32, y: f32) -> bool {
             let by = world.segment[i].by - y;
             let dx = world.segment[i].bx - world.segment[i].ax;
             let dy = world.segment[i].by - world.segment[i].ay;
-            let over = ax * dy - ay * dx;
-            let under = lx * dy - ly * dx;
-            let side_a = ax * ly - ay * lx;
-            let side_b = bx * ly - by * lx;
-            let crosses = (side_a > 0.0f) != (side_b > 0.0f);
-            let over_signed = select(over, -over, under < 0.0f);
-            let between = over_signed >= 0.0f && over_signed < abs(under);
+            let at = crossing(ax, ay, bx, by, dx, dy, lx, ly);
             let solid = world.segment[i].charger == 0u && world.segment[i].length >= 0.0f;
-            hidden |= u32(crosses && between && solid);
+            hidden |= u32(at.x >= 0.0f && at.x < at.y && solid);
         }
     }
     return lanes_or(lane, hidden) == 0u;

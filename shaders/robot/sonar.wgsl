@@ -13,6 +13,20 @@ fn rays(lane: u32, cosine: f32, sine: f32) -> vec2<f32> {
     return vec2<f32>(ux, uy);
 }
 
+// Where a line from the origin along (`ux`, `uy`) crosses a segment from (`ax`, `ay`) to (`bx`, `by`), whose
+// direction is (`dx`, `dy`): the distance is `over` / `under`, in lengths of (`ux`, `uy`). `over` is negative
+// where the line does not cross.
+fn crossing(ax: f32, ay: f32, bx: f32, by: f32, dx: f32, dy: f32, ux: f32, uy: f32) -> vec2<f32> {
+    // Sides come from the ends alone, so a ray cannot slip between two segments that share one.
+    let side_a = ax * uy - ay * ux;
+    let side_b = bx * uy - by * ux;
+    let crosses = (side_a > 0.0f) != (side_b > 0.0f);
+    let over = ax * dy - ay * dx;
+    let under = ux * dy - uy * dx;
+    let over_signed = select(over, -over, under < 0.0f);
+    return vec2<f32>(select(-1.0f, over_signed, crosses), abs(under));
+}
+
 fn ranges(x: f32, y: f32, ux: f32, uy: f32) -> f32 {
     let column = min(u32(x * CELLS_PER_INCH), world.cell_columns - 1u);
     let row = min(u32(y * CELLS_PER_INCH), world.cell_rows - 1u);
@@ -29,18 +43,10 @@ fn ranges(x: f32, y: f32, ux: f32, uy: f32) -> f32 {
         let by = world.segment[i].by - y;
         let dx = world.segment[i].bx - world.segment[i].ax;
         let dy = world.segment[i].by - world.segment[i].ay;
-        let over = ax * dy - ay * dx;
-        let under = ux * dy - uy * dx;
-        // Sides come from the ends alone, so a ray cannot slip between two segments that share one.
-        let side_a = ax * uy - ay * ux;
-        let side_b = bx * uy - by * ux;
-        let crosses = (side_a > 0.0f) != (side_b > 0.0f);
-        let over_signed = select(over, -over, under < 0.0f);
-        let under_signed = abs(under);
-        let nearer = over_signed * best_under < best_over * under_signed;
-        let hit = crosses && over_signed >= 0.0f && nearer;
-        best_over = select(best_over, over_signed, hit);
-        best_under = select(best_under, under_signed, hit);
+        let at = crossing(ax, ay, bx, by, dx, dy, ux, uy);
+        let hit = at.x >= 0.0f && at.x * best_under < best_over * at.y;
+        best_over = select(best_over, at.x, hit);
+        best_under = select(best_under, at.y, hit);
     }
     return best_over * reciprocal(best_under);
 }

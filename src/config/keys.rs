@@ -162,15 +162,17 @@ keys! {
     NOISE_COMPASS = "robot.noise.compass", Some("2.865"), Number(Bounds::between(0.0, 180.0)), Ours, "degrees on the compass; 0.05 rad";
 
     HIDDEN = "learning.hidden", Some("32"), Whole(1, 32), Ours, "hidden units of each net; one net per child";
-    INIT = "learning.init", Some("0.5"), Number(Bounds::above(0.0, 10.0)), Ours, "initial weights are uniform in plus or minus this";
+    INIT = "learning.init", Some("0.2"), Number(Bounds::above(0.0, 10.0)), Ours, "initial weights are uniform in plus or minus this";
     GAMMA = "learning.gamma", Some("0.9"), SHARE, Ours, "discount factor";
     LAMBDA = "learning.lambda", Some("0.95"), SHARE, Ours, "0 learns from the next value alone, 1 from the observed return";
     OPTIMISER = "learning.optimiser", Some("'adam'"), Choice(&["adam", "sgd"]), Ours, "weight update rule";
     RATE = "learning.rate", Some("0.0015"), Number(Bounds::above(0.0, 10.0)), Ours, "learning rate; the default is for adam, sgd has none";
+    RATE_END_SHARE = "learning.rate_end_share", Some("0.1"), SHARE, Ours, "share of the rate that is left at the end of its schedule, 1 for a constant rate";
+    RATE_TRIALS = "learning.rate_trials", Some("300"), Whole(1, MANY), Ours, "trials over which the rate falls linearly to that share";
     MOMENTUM = "learning.momentum", Some("0.0"), DECAY, Ours, "momentum of sgd, 0 for none";
     BETA1 = "learning.beta1", Some("0.9"), DECAY, Ours, "decay of adam's mean gradient";
     BETA2 = "learning.beta2", Some("0.999"), DECAY, Ours, "decay of adam's mean squared gradient";
-    EPSILON = "learning.epsilon", Some("1e-8"), Number(Bounds::between(1e-12, 1.0)), Ours, "added to the root of adam's mean squared gradient";
+    EPSILON = "learning.epsilon", Some("1e-3"), Number(Bounds::between(1e-12, 1.0)), Ours, "added to the root of adam's mean squared gradient";
     REWARD_SCALE = "learning.reward_scale", Some("100.0"), Number(Bounds::between(1e-3, 1e6)), Ours, "a reward of this size is learned as Q = 1";
     TARGET_LIMIT = "learning.target_limit", Some("0.99"), Number(Bounds::inside(0.0, 1.0)), Ours, "targets are clipped to plus or minus this, inside the net's output range";
     HEAT_START = "learning.inverse_temperature_start", Some("20.0"), HEAT, Ours, "1/T of action choice at the first trial, per Q / reward_scale";

@@ -65,6 +65,8 @@ pub(super) fn read(item: &Item<'_>, idle: &mut Idle) -> Result<Learning, ConfigE
         } else {
             Optimiser::Adam { rate, beta1, beta2, epsilon }
         },
+        rate_end_share: section.number(&keys::RATE_END_SHARE)?,
+        rate_trials: section.whole(&keys::RATE_TRIALS)?,
         reward_scale: section.number(&keys::REWARD_SCALE)?,
         target_limit: section.number(&keys::TARGET_LIMIT)?,
         inverse_temperature_start: section.number(&keys::HEAT_START)?,

@@ -200,6 +200,10 @@ pub struct Learning {
     pub lambda: f32,
     /// The optimiser and its rates.
     pub optimiser: Optimiser,
+    /// Share of the learning rate that is left at the end of its schedule, 1 for a constant rate.
+    pub rate_end_share: f32,
+    /// Trials over which the rate falls linearly to that share.
+    pub rate_trials: u32,
     /// Reward of this size is learned as Q = 1.
     pub reward_scale: f32,
     /// Targets are clipped to plus or minus this, inside the bounded output's range.

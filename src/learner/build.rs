@@ -179,6 +179,8 @@ fn settings_of(skill: &Skill, noise: &Noise, run_seed: u32, seed: u32) -> Settin
         lambda: learning.lambda,
         optimiser,
         rate,
+        rate_fall: (1.0 - learning.rate_end_share) / learning.rate_trials as f32,
+        rate_trials: learning.rate_trials,
         beta1,
         beta2,
         epsilon2: epsilon * epsilon,

@@ -241,8 +241,12 @@ shared! {
         lambda: f32,
         /// 0 gradient descent with momentum, 1 Adam.
         optimiser: u32,
-        /// Learning rate.
+        /// Learning rate at the first trial.
         rate: f32,
+        /// Share of it that each trial takes away.
+        rate_fall: f32,
+        /// Trials over which it falls.
+        rate_trials: u32,
         /// Momentum, or Adam's decay of the mean gradient.
         beta1: f32,
         /// Adam's decay of the mean squared gradient.

@@ -9,7 +9,7 @@ use crate::learner::memory::{Learner, Scratch};
 use crate::lesson::record::CUT;
 use crate::math::functions::{exponential, is_number, ln};
 use crate::math::rng::{Purpose, Stream, below, draw, unit};
-use crate::qnet::backward::backward;
+use crate::qnet::backward::{backward, learning_rate};
 use crate::qnet::forward::forward;
 use crate::skill::choose::{sharpness, weigh};
 use crate::skill::encode::encode;
@@ -113,7 +113,8 @@ pub fn replay_step(learner: &mut Learner<'_>, scratch: &mut Scratch, base: u32) 
         if !sound {
             learner.cursor.phase = PHASE_FAILED;
         } else if policy {
-            backward(learner.nets, scratch, skill, settings, base, child, delta);
+            let pace = learning_rate(settings, learner.cursor.trial);
+            backward(learner.nets, scratch, skill, settings, base, child, delta, pace);
             learner.cursor.updates += 1;
         }
         learner.cursor.next_best = outlook.best;

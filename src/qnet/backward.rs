@@ -55,8 +55,16 @@ pub fn gradient(scratch: &Scratch, count: u32, child: u32, row: u32, errors: &Er
     slope
 }
 
-/// Moves the net of `child` so that its output changes by about `delta` times the learning rate.
+/// Learning rate of a trial: it falls linearly over the first trials.
 #[inline(always)]
+pub fn learning_rate(settings: &Settings, trial: u32) -> f32 {
+    let risen = if trial < settings.rate_trials { trial } else { settings.rate_trials };
+    settings.rate * (1.0 - settings.rate_fall * risen as f32)
+}
+
+/// Moves the net of `child` so that its output changes by about `delta` times the learning rate `pace`.
+#[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "the twin of a shader function, which has no methods")]
 pub fn backward(
     nets: &mut [f32],
     scratch: &Scratch,
@@ -65,6 +73,7 @@ pub fn backward(
     base: u32,
     child: u32,
     delta: f32,
+    pace: f32,
 ) {
     let net = net_of(skill, base, child);
     let count = skill.inputs;
@@ -72,7 +81,6 @@ pub fn backward(
     let slab = rows * LANES as u32;
     let beta1 = settings.beta1;
     let beta2 = settings.beta2;
-    let step = settings.rate;
     let epsilon2 = settings.epsilon2;
     let found = errors(nets, scratch, skill, net, child, delta);
     if settings.optimiser == 1 {
@@ -81,7 +89,7 @@ pub fn backward(
         let clock = (base + skill.clock_offset + child) as usize;
         let first = flush(nets[clock] * beta1);
         let second = flush(nets[clock + CLOCK_SECOND as usize] * beta2);
-        let rate = step * square_root(1.0 - second) * reciprocal(1.0 - first);
+        let rate = pace * square_root(1.0 - second) * reciprocal(1.0 - first);
         nets[clock] = first;
         nets[clock + CLOCK_SECOND as usize] = second;
         let rest1 = 1.0 - beta1;
@@ -110,7 +118,7 @@ pub fn backward(
             let slope = gradient(scratch, count, child, row as u32, &found);
             for lane in 0..LANES {
                 let g = slope[lane];
-                let velocity = flush(beta1 * velocities[row][lane] + step * g);
+                let velocity = flush(beta1 * velocities[row][lane] + pace * g);
                 velocities[row][lane] = velocity;
                 weights[row][lane] += velocity;
             }

@@ -156,15 +156,16 @@ impl Floor {
     }
 
     fn solids(&mut self, world: &World) {
+        // The lines come first, so that none shows inside a solid where two boxes overlap.
+        for segment in &world.segments {
+            let (a, b) = (self.at(segment.a), self.at(segment.b));
+            self.canvas.line(&[a, b], INK, 3.0);
+        }
         for area in &world.boxes {
             self.fill(area, SOLID);
         }
         if let Some(charger) = &world.charger {
             self.fill(&charger.area, CHARGER);
-        }
-        for segment in &world.segments {
-            let (a, b) = (self.at(segment.a), self.at(segment.b));
-            self.canvas.line(&[a, b], INK, 1.6);
         }
         if let Some(light) = &world.light {
             let centre = self.at(light.at);

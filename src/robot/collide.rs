@@ -30,6 +30,19 @@ pub struct Travel {
     pub connected: bool,
 }
 
+/// Distance at which the rim meets a point at (`ex`, `ey`) from the centre, [`FAR`] if it never does, and how
+/// far the centre then still is behind the point.
+#[inline(always)]
+fn meet(ex: f32, ey: f32, ux: f32, uy: f32) -> (f32, f32) {
+    let ahead = ex * ux + ey * uy;
+    let across = ex * uy - ey * ux;
+    let chord = RADIUS * RADIUS - across * across;
+    let back = square_root(chord);
+    let gap = ahead - back;
+    let reach = if gap > 0.0 { gap } else { 0.0 };
+    (if chord > 0.0 && ahead > 0.0 { reach } else { FAR }, back)
+}
+
 /// Distance to contact with one segment, and the cosine between the travel and the contact point.
 #[inline(always)]
 fn contact(block: &SegmentBlock, lane: usize, x: f32, y: f32, ux: f32, uy: f32) -> (f32, f32) {
@@ -50,24 +63,12 @@ fn contact(block: &SegmentBlock, lane: usize, x: f32, y: f32, ux: f32, uy: f32) 
     let mut reach = if line_hit { line_reach } else { FAR };
     let mut cosine = closing;
     // The end points: the disc's rim meets a point.
-    let ex = block.bx[lane] - x;
-    let ey = block.by[lane] - y;
-    let ahead_a = -wx * ux - wy * uy;
-    let across_a = wx * uy - wy * ux;
-    let chord_a = RADIUS * RADIUS - across_a * across_a;
-    let back_a = square_root(chord_a);
-    let gap_a = ahead_a - back_a;
-    let reach_a = if gap_a > 0.0 { gap_a } else { 0.0 };
-    let hit_a = chord_a > 0.0 && ahead_a > 0.0 && length >= 0.0 && reach_a < reach;
+    let (reach_a, back_a) = meet(-wx, -wy, ux, uy);
+    let hit_a = length >= 0.0 && reach_a < reach;
     cosine = if hit_a { back_a * INVERSE_RADIUS } else { cosine };
     reach = if hit_a { reach_a } else { reach };
-    let ahead_b = ex * ux + ey * uy;
-    let across_b = ex * uy - ey * ux;
-    let chord_b = RADIUS * RADIUS - across_b * across_b;
-    let back_b = square_root(chord_b);
-    let gap_b = ahead_b - back_b;
-    let reach_b = if gap_b > 0.0 { gap_b } else { 0.0 };
-    let hit_b = chord_b > 0.0 && ahead_b > 0.0 && length >= 0.0 && reach_b < reach;
+    let (reach_b, back_b) = meet(block.bx[lane] - x, block.by[lane] - y, ux, uy);
+    let hit_b = length >= 0.0 && reach_b < reach;
     cosine = if hit_b { back_b * INVERSE_RADIUS } else { cosine };
     reach = if hit_b { reach_b } else { reach };
     (reach, cosine)

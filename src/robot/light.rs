@@ -8,6 +8,7 @@ use super::floor::Floor;
 use crate::learner::layout::LANES;
 use crate::math::functions::{exponential, reciprocal, reciprocal_sqrt};
 use crate::math::lanes::{Lanes, lanes_or};
+use crate::robot::sonar::crossing;
 
 /// 1 / (15 degrees in radians)^2.
 const SHARPNESS: f32 = 14.590_25;
@@ -26,15 +27,9 @@ pub fn in_sight(floor: &Floor, x: f32, y: f32) -> bool {
             let by = block.by[lane] - y;
             let dx = block.bx[lane] - block.ax[lane];
             let dy = block.by[lane] - block.ay[lane];
-            let over = ax * dy - ay * dx;
-            let under = lx * dy - ly * dx;
-            let side_a = ax * ly - ay * lx;
-            let side_b = bx * ly - by * lx;
-            let crosses = (side_a > 0.0) != (side_b > 0.0);
-            let over_signed = if under < 0.0 { -over } else { over };
-            let between = over_signed >= 0.0 && over_signed < under.abs();
+            let (over, under) = crossing(ax, ay, bx, by, dx, dy, lx, ly);
             let solid = block.charger[lane] == 0 && block.length[lane] >= 0.0;
-            hidden[lane] |= u32::from(crosses && between && solid);
+            hidden[lane] |= u32::from(over >= 0.0 && over < under && solid);
         }
     }
     lanes_or(&hidden) == 0

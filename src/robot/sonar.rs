@@ -26,6 +26,22 @@ pub fn rays(cosine: f32, sine: f32) -> (Lanes, Lanes) {
     (ux, uy)
 }
 
+/// Where a line from the origin along (`ux`, `uy`) crosses a segment from (`ax`, `ay`) to (`bx`, `by`), whose
+/// direction is (`dx`, `dy`): the distance is `over` / `under`, in lengths of (`ux`, `uy`). `over` is negative
+/// where the line does not cross.
+#[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "the twin of a shader function; four points")]
+pub fn crossing(ax: f32, ay: f32, bx: f32, by: f32, dx: f32, dy: f32, ux: f32, uy: f32) -> (f32, f32) {
+    // Sides come from the ends alone, so a ray cannot slip between two segments that share one.
+    let side_a = ax * uy - ay * ux;
+    let side_b = bx * uy - by * ux;
+    let crosses = (side_a > 0.0) != (side_b > 0.0);
+    let over = ax * dy - ay * dx;
+    let under = ux * dy - uy * dx;
+    let over_signed = if under < 0.0 { -over } else { over };
+    (if crosses { over_signed } else { -1.0 }, under.abs())
+}
+
 /// Distance along each ray to the nearest segment, at most [`SONAR_LIMIT`].
 #[inline(always)]
 pub fn ranges(floor: &Floor, atlas: &[u32], x: f32, y: f32, ux: &Lanes, uy: &Lanes) -> Lanes {
@@ -44,19 +60,11 @@ pub fn ranges(floor: &Floor, atlas: &[u32], x: f32, y: f32, ux: &Lanes, uy: &Lan
         let by = segment.by - y;
         let dx = segment.bx - segment.ax;
         let dy = segment.by - segment.ay;
-        let over = ax * dy - ay * dx;
         for lane in 0..LANES {
-            let under = ux[lane] * dy - uy[lane] * dx;
-            // Sides come from the ends alone, so a ray cannot slip between two segments that share one.
-            let side_a = ax * uy[lane] - ay * ux[lane];
-            let side_b = bx * uy[lane] - by * ux[lane];
-            let crosses = (side_a > 0.0) != (side_b > 0.0);
-            let over_signed = if under < 0.0 { -over } else { over };
-            let under_signed = under.abs();
-            let nearer = over_signed * best_under[lane] < best_over[lane] * under_signed;
-            let hit = crosses && over_signed >= 0.0 && nearer;
-            best_over[lane] = if hit { over_signed } else { best_over[lane] };
-            best_under[lane] = if hit { under_signed } else { best_under[lane] };
+            let (over, under) = crossing(ax, ay, bx, by, dx, dy, ux[lane], uy[lane]);
+            let hit = over >= 0.0 && over * best_under[lane] < best_over[lane] * under;
+            best_over[lane] = if hit { over } else { best_over[lane] };
+            best_under[lane] = if hit { under } else { best_under[lane] };
         }
     }
     let mut range = [0.0; LANES];
