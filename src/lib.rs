@@ -20,7 +20,8 @@
 //! order, same comments on why. Both languages share one memory layout, [`learner::layout`], from which the
 //! WGSL constants and structs are emitted. Results are built from IEEE f32 `+ - *`, comparisons and integers
 //! alone ([`math`]), random numbers are counters ([`math::rng`]), and on Vulkan the SPIR-V is decorated so
-//! that no compiler fuses or re-associates. Hence CPU and GPU agree to the byte, and tests compare bytes.
+//! that no compiler fuses or re-associates. Hence CPU and GPU agree to the byte, and tests compare bytes;
+//! [`backend::parity`] names the first word that differs, and `skilltree devices --parity` asks any adapter.
 //!
 //! # Modules, in the order in which they may use one another
 //!

@@ -27,3 +27,16 @@ fn a_gpu_that_is_not_there_is_refused() {
     let output = line.env("VK_DRIVER_FILES", "/nonexistent").env("VK_ICD_FILENAMES", "/nonexistent").output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }
+
+/// A comparison of nothing is not a success.
+#[test]
+fn parity_without_an_adapter_is_an_error() {
+    let mut line = skilltree(std::path::Path::new(env!("CARGO_MANIFEST_DIR")));
+    line.args(["devices", "--parity", "configs/docking.toml"]);
+    line.env("VK_DRIVER_FILES", "/nonexistent").env("VK_ICD_FILENAMES", "/nonexistent");
+    let output = line.output().unwrap();
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    assert!(message.contains("no graphics adapter") && message.contains("\nhint: "), "{message}");
+    assert!(output.stdout.is_empty());
+}

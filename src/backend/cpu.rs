@@ -3,7 +3,7 @@
 //! The twins are plain arithmetic without fused operations, so the instruction set they are compiled for
 //! changes their speed and not their bytes.
 
-use super::{Backend, BackendError, Cohort, Stop, Test};
+use super::{Backend, BackendError, Cohort, Stop, Test, fresh};
 use crate::advance::advance;
 use crate::evaluate::{STATE_CUT, STATE_FRESH, evaluate};
 use crate::learner::layout::{Cursor, Dispatch, Episode, Robot};
@@ -206,7 +206,7 @@ impl Backend for CpuBackend {
             ..Dispatch::zeroed()
         };
         let count = test.episodes as usize;
-        let mut episodes = vec![Episode::zeroed(); cohort.cursors.len() * count];
+        let mut episodes = fresh(cohort.cursors.len() * count);
         self.pool.install(|| {
             episodes
                 .par_chunks_mut(count.max(1))

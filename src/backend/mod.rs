@@ -5,7 +5,9 @@
 
 pub mod cpu;
 pub mod gpu;
+pub mod parity;
 
+use crate::evaluate::STATE_FRESH;
 use crate::learner::layout::{Cursor, Episode, PHASE_DONE, PHASE_START, Robot, Settings};
 use crate::learner::memory::Shared;
 
@@ -61,6 +63,12 @@ pub struct Test {
     pub number: u32,
     /// Test trials of each learner.
     pub episodes: u32,
+}
+
+/// Test trials that have not begun. A field that the kernel leaves unset shows as a NaN.
+fn fresh(count: usize) -> Vec<Episode> {
+    let unset: Episode = bytemuck::cast([parity::UNWRITTEN; size_of::<Episode>() / 4]);
+    vec![Episode { state: STATE_FRESH, ..unset }; count]
 }
 
 /// Executes kernels.

@@ -1,5 +1,6 @@
 //! Which backend executes the kernels.
 
+use super::output::tell;
 use crate::backend::cpu::CpuBackend;
 use crate::backend::gpu::{GpuBackend, GpuOptions};
 use crate::backend::{Backend, BackendError};
@@ -26,8 +27,8 @@ pub(super) struct BackendArguments {
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
     /// Threads of the CPU backend; 0 is one per core.
-    #[arg(long, default_value_t = 0, value_name = "N")]
-    threads: usize,
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=1024))]
+    threads: u32,
     /// Quanta (steps or replayed transitions) of each learner per dispatch; found out if not given.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     quanta: Option<u32>,
@@ -36,12 +37,6 @@ pub(super) struct BackendArguments {
 impl BackendArguments {
     /// Opens the backend and says what it is.
     pub(super) fn open(&self) -> Result<Box<dyn Backend>, BackendError> {
-        if self.threads > 1024 {
-            return Err(BackendError::Unavailable {
-                message: format!("--threads {} is more than 1024", self.threads),
-                hint: "leave --threads out to use one per core".to_owned(),
-            });
-        }
         let options = GpuOptions { adapter: self.adapter.clone(), quanta: self.quanta, shard: None };
         match self.backend {
             Choice::Gpu => Ok(Box::new(GpuBackend::new(&options)?)),
@@ -51,7 +46,7 @@ impl BackendArguments {
                 Ok(backend) => Ok(Box::new(backend)),
                 Err(reason) => {
                     let reason = reason.to_string();
-                    eprintln!("no exact GPU, so the CPU it is: {}", reason.lines().next().unwrap_or_default());
+                    tell(&format!("no exact GPU, so the CPU it is: {}", reason.lines().next().unwrap_or_default()));
                     self.cpu()
                 }
             },
@@ -60,6 +55,6 @@ impl BackendArguments {
     }
 
     fn cpu(&self) -> Result<Box<dyn Backend>, BackendError> {
-        Ok(Box::new(CpuBackend::new(self.threads, self.quanta)?))
+        Ok(Box::new(CpuBackend::new(self.threads as usize, self.quanta)?))
     }
 }

@@ -1,6 +1,7 @@
 //! `skilltree devices`: every adapter, whether it is exact, and why one is not used.
 
-use super::Failure;
+use super::output::print;
+use super::{Failure, exit_codes, parity};
 use crate::backend::gpu::adapter::adapters;
 use crate::backend::gpu::canary::SAFE_TURNS;
 use crate::backend::gpu::conformance::{QUESTIONS, Verdict, examine};
@@ -9,13 +10,28 @@ use crate::backend::gpu::probe::ANSWER_WORDS;
 use crate::backend::gpu::{GpuOptions, adapter};
 use serde::Serialize;
 use std::fmt::Write;
+use std::path::PathBuf;
 
 /// Lists the graphics adapters of this machine and examines each: does it give the same bytes as the CPU?
 #[derive(Debug, clap::Args)]
+#[command(after_help = concat!(
+    "Examples:\n",
+    "  skilltree devices\n",
+    "  skilltree devices --parity configs/docking.toml\n\n",
+    "--parity trains some learners for three trials, tests them and moves 512 robots, on every adapter and on the ",
+    "CPU, and names the first word that differs. Any difference is exit code 1.\n\n",
+    exit_codes!()
+))]
 pub(super) struct Arguments {
     /// One JSON object for all adapters.
     #[arg(long)]
     json: bool,
+    /// Trains, tests and moves robots of this experiment on every adapter, and compares each byte with the CPU's.
+    #[arg(long, value_name = "CONFIG", conflicts_with = "json")]
+    parity: Option<PathBuf>,
+    /// Learners that --parity trains.
+    #[arg(long, value_name = "N", requires = "parity", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=65_536))]
+    learners: u32,
 }
 
 /// What is known of all adapters.
@@ -45,19 +61,21 @@ struct Entry {
     loop_budget: Option<u32>,
 }
 
-/// Prints the adapters.
+/// Prints the adapters, or what they do to an experiment.
 ///
 /// # Errors
-/// None as yet: a machine without adapters is not in error.
+/// Where an adapter is to leave the CPU's bytes and does not. A machine without adapters is not in error.
 pub(super) fn devices(arguments: &Arguments) -> Result<(), Failure> {
+    if let Some(config) = &arguments.parity {
+        return parity::check(config, arguments.learners as usize);
+    }
     let listing = listing();
     if arguments.json {
         let text = serde_json::to_string_pretty(&listing).unwrap_or_default();
-        println!("{text}");
+        print(&(text + "\n"))
     } else {
-        print!("{}", text(&listing));
+        print(&text(&listing))
     }
-    Ok(())
 }
 
 fn listing() -> Listing {

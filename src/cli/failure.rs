@@ -30,6 +30,16 @@ pub enum Failure {
     /// A backend cannot be had, or failed.
     #[error(transparent)]
     Backend(#[from] BackendError),
+    /// An adapter does not leave the bytes of the CPU.
+    #[error(
+        "adapters that differ from the CPU: {differing} of {adapters}\nhint: `--backend cpu` gives the exact results; a newer driver may too"
+    )]
+    Parity {
+        /// Adapters that differ, or failed.
+        differing: usize,
+        /// Adapters that were asked.
+        adapters: usize,
+    },
     /// A run folder cannot be read or written.
     #[error(transparent)]
     Record(#[from] RecordError),
@@ -44,7 +54,7 @@ impl Failure {
         match self {
             Self::Usage { .. } | Self::Config(_) | Self::Setup(_) => 2,
             Self::Backend(BackendError::Device { .. }) => 75,
-            Self::Output(_) | Self::Backend(_) | Self::Record(_) | Self::Report(_) => 1,
+            Self::Output(_) | Self::Parity { .. } | Self::Backend(_) | Self::Record(_) | Self::Report(_) => 1,
         }
     }
 }

@@ -4,6 +4,7 @@ mod backend;
 mod devices;
 mod failure;
 mod output;
+mod parity;
 mod probe;
 mod progress;
 mod report;
@@ -55,4 +56,9 @@ pub fn run(cli: Cli) -> Result<(), Failure> {
         Command::Probe(arguments) => probe::probe(&arguments),
         Command::Devices(arguments) => devices::devices(&arguments),
     }
+}
+
+/// `1 seed`, `2 seeds`.
+fn count(number: usize, what: &str) -> String {
+    if number == 1 { format!("1 {what}") } else { format!("{number} {what}s") }
 }

@@ -3,7 +3,7 @@
 use super::backend::BackendArguments;
 use super::output::{print, tell};
 use super::progress::RunProgress;
-use super::{Failure, exit_codes};
+use super::{Failure, count, exit_codes};
 use crate::config::plan::Plan;
 use crate::config::{Overrides, load};
 use crate::experiment::group::{Group, groups};
@@ -110,10 +110,6 @@ fn is_new(out: &Path) -> bool {
 fn size(plan: &Plan) -> (usize, u64) {
     let trials: u64 = plan.arms.iter().flat_map(|arm| &arm.skills).map(|skill| u64::from(skill.trials)).sum();
     (plan.arms.len() * plan.seeds.len(), trials * plan.seeds.len() as u64)
-}
-
-fn count(number: usize, what: &str) -> String {
-    if number == 1 { format!("1 {what}") } else { format!("{number} {what}s") }
 }
 
 /// What one learner takes while it trains: a cohort of them is in memory at a time.

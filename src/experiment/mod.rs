@@ -5,6 +5,7 @@
 
 pub mod files;
 pub mod group;
+pub mod parity;
 pub mod result;
 pub mod run;
 pub mod senses;

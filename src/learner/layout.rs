@@ -27,11 +27,12 @@ macro_rules! shared {
             $("    ", stringify!($field), ": ", shared!(@wgsl $kind), ",\n",)*
             "}\n"
         )),*];
-        /// Name, size and field offsets in bytes of every shared struct as Rust lays it out.
-        pub const LAYOUTS: &[(&str, usize, &[(&str, usize)])] = &[$((
+        /// Name and size of every shared struct as Rust lays it out; name, offset in bytes and WGSL type of
+        /// each of its fields.
+        pub const LAYOUTS: &[(&str, usize, &[(&str, usize, &str)])] = &[$((
             stringify!($name),
             size_of::<$name>(),
-            &[$((stringify!($field), std::mem::offset_of!($name, $field))),*],
+            &[$((stringify!($field), std::mem::offset_of!($name, $field), shared!(@wgsl $kind))),*],
         )),*];
     };
     (@rust u32) => { u32 };

@@ -7,14 +7,13 @@ use super::pipeline::Pipeline;
 use super::probe::{ANSWER_WORDS, Answer, NAMES, QUESTION_WORDS, Question, SUBNORMAL, probe};
 use super::source::{CANARY, PROBE};
 use crate::backend::BackendError;
+use crate::backend::parity::UNWRITTEN;
 use crate::learner::layout::LANES;
 use crate::math::rng::philox;
 use bytemuck::Zeroable;
 
 /// Inputs of each function: enough that every shape known to be fused or re-associated shows it.
 pub const QUESTIONS: usize = 1 << 17;
-/// What the answers hold before the adapter writes them: a NaN that no function returns.
-const UNWRITTEN: u32 = 0xffff_ffff;
 
 /// What the check found.
 #[derive(Debug, Clone, PartialEq, Eq)]

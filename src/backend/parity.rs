@@ -1,0 +1,221 @@
+//! Where two backends' results first differ.
+//!
+//! Words are compared as bits. A number that is not finite counts as a difference even where both sides hold
+//! it, but for learners that have failed on both. The first difference is that of the first learner, and
+//! within a learner that of the first field: the cursor's in the order of their declaration, then nets,
+//! lessons and rows, word by word.
+
+use super::Cohort;
+use crate::learner::layout::{
+    Episode, LANES, LAYOUTS, LESSON_HEADER, PHASE_FAILED, RECORD_WORDS, ROW_WORDS, Robot, SkillPlan,
+};
+use crate::qnet::backward::CLOCK_SECOND;
+use std::fmt;
+
+/// What outputs hold before a kernel writes them: a NaN that no arithmetic makes.
+pub const UNWRITTEN: u32 = 0xffff_ffff;
+
+/// Names of the words that open a lesson.
+const HEADER: [&str; LESSON_HEADER] = ["steps", "end", "reward", "collisions"];
+/// Names of the words of a recorded step.
+const RECORD: [&str; RECORD_WORDS] = [
+    "sonar 0 to 3",
+    "sonar 4 to 7",
+    "sonar 8 to 11",
+    "sonar 12 to 15",
+    "sonar 16 to 19",
+    "sonar 20 to 23",
+    "light and bumpers",
+    "compass",
+    "child, mask and events",
+    "reward",
+];
+/// Names of the columns of the trial table.
+const COLUMNS: [&str; ROW_WORDS] = ["skill", "trial", "actions", "steps", "reward", "success", "collisions", "taught"];
+/// Those among the names above that stand for an f32.
+const NUMBERS: [&str; 2] = ["compass", "reward"];
+/// What a net's three slabs hold: the weights, and what the optimiser keeps of each.
+const SLABS: [&str; 3] = ["", "first moment of the ", "second moment of the "];
+
+/// The first word in which two results differ.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Difference {
+    /// Kernel that left the word.
+    pub kernel: &'static str,
+    /// Learner, or robot of kernel `step`, that it belongs to.
+    pub learner: usize,
+    /// What the word holds.
+    pub field: String,
+    /// The word on the left side.
+    pub left: u32,
+    /// The word on the right side.
+    pub right: u32,
+    /// False where a side is not a finite number but should be; the sides may then be equal.
+    pub finite: bool,
+}
+
+impl fmt::Display for Difference {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { kernel, learner, field, left, right, finite } = self;
+        let who = if *kernel == "step" { "robot" } else { "learner" };
+        let finite = if *finite { "" } else { ", not finite" };
+        write!(f, "kernel {kernel}, {who} {learner}: {field}: {left:#010x} against {right:#010x}{finite}")
+    }
+}
+
+/// What a word holds, and whether that is an f32.
+type Place = (String, bool);
+
+/// The first differing word of two equally long slices, described by `place`.
+fn first(
+    (kernel, learner): (&'static str, usize),
+    (left, right): (&[u32], &[u32]),
+    failed: bool,
+    place: impl Fn(usize) -> Place,
+) -> Option<Difference> {
+    left.iter().zip(right).enumerate().find_map(|(word, (&left, &right))| {
+        let wild = |bits| !failed && !f32::from_bits(bits).is_finite();
+        if left == right && !wild(left) {
+            return None;
+        }
+        let (field, number) = place(word);
+        let finite = !(number && (wild(left) || wild(right)));
+        (left != right || !finite).then_some(Difference { kernel, learner, field, left, right, finite })
+    })
+}
+
+/// A difference in size, which leaves nothing to compare.
+pub(crate) fn sizes(kernel: &'static str, learner: usize, what: &str, left: usize, right: usize) -> Option<Difference> {
+    let (left, right) = (left as u32, right as u32);
+    let field = format!("number of {what}");
+    (left != right).then_some(Difference { kernel, learner, field, left, right, finite: true })
+}
+
+/// Field of a shared struct that holds its word `word`.
+fn field_of(layout: &str, word: usize) -> Place {
+    let fields = LAYOUTS.iter().find(|(name, ..)| *name == layout).map_or(&[][..], |(.., fields)| fields);
+    match fields.iter().rfind(|(_, offset, _)| *offset <= 4 * word) {
+        Some(("record", offset, _)) => record_word(word - offset / 4),
+        Some((name, _, wgsl)) => ((*name).to_owned(), *wgsl == "f32"),
+        None => (format!("word {word}"), false),
+    }
+}
+
+fn record_word(word: usize) -> Place {
+    (format!("record word {word} ({})", RECORD[word]), NUMBERS.contains(&RECORD[word]))
+}
+
+/// Word `word` of a learner's nets.
+fn nets_word(skills: &[SkillPlan], word: usize) -> Place {
+    let Some((skill, plan)) = skills.iter().enumerate().rfind(|(_, plan)| plan.nets_offset as usize <= word) else {
+        return (format!("nets word {word}"), true);
+    };
+    let text = if let Some(lane) = word.checked_sub(plan.clock_offset as usize) {
+        let (order, child) = if lane < CLOCK_SECOND as usize { ("first", lane) } else { ("second", lane - 16) };
+        format!("child {child}, clock of {order} moments")
+    } else {
+        let within = word - plan.nets_offset as usize;
+        let slab = plan.rows as usize * LANES;
+        let (child, slabs, row, unit) = (within / (3 * slab), within / slab % 3, within % slab / LANES, within % LANES);
+        let inputs = plan.inputs as usize;
+        let what = match row {
+            row if row < inputs => format!("weight of input {row}"),
+            row => ["hidden bias", "output weight", "output bias"][row - inputs].to_owned(),
+        };
+        format!("child {child}, {}{what}, unit {unit}", SLABS[slabs])
+    };
+    (format!("nets word {word} (skill {skill}, {text})"), true)
+}
+
+/// Word `word` of a learner's lessons.
+fn lessons_word(skills: &[SkillPlan], word: usize) -> Place {
+    let Some((skill, plan)) = skills.iter().enumerate().rfind(|(_, plan)| plan.memory_offset as usize <= word) else {
+        return (format!("lessons word {word}"), false);
+    };
+    let within = word - plan.memory_offset as usize;
+    let stride = (plan.lesson_stride as usize).max(1);
+    let (slot, within) = (within / stride, within % stride);
+    let (text, number) = match within.checked_sub(LESSON_HEADER) {
+        None => (HEADER[within].to_owned(), NUMBERS.contains(&HEADER[within])),
+        Some(within) => {
+            let (text, number) = record_word(within % RECORD_WORDS);
+            (format!("step {}, {text}", within / RECORD_WORDS), number)
+        }
+    };
+    (format!("lessons word {word} (skill {skill}, slot {slot}, {text})"), number)
+}
+
+/// Word `word` of a learner's trial table.
+fn rows_word(word: usize) -> Place {
+    let column = COLUMNS[word % ROW_WORDS];
+    (format!("rows word {word} (row {}, {column})", word / ROW_WORDS), NUMBERS.contains(&column))
+}
+
+/// The first difference between two cohorts after kernel `advance`. Words of lessons and rows that are
+/// [`UNWRITTEN`] on both sides are equal.
+pub fn advance(left: &Cohort, right: &Cohort) -> Option<Difference> {
+    const KERNEL: &str = "advance";
+    let strides = |cohort: &Cohort| [cohort.skills, cohort.nets_stride, cohort.lessons_stride, cohort.rows_stride];
+    let names = ["skills", "words of nets", "words of lessons", "words of rows"];
+    let mut strides = names.iter().zip(strides(left)).zip(strides(right));
+    if let Some(found) = strides.find_map(|((name, left), right)| sizes(KERNEL, 0, name, left, right)) {
+        return Some(found);
+    }
+    let skills = &left.shared.skills;
+    let one = |learner: usize| {
+        let cursors = (&left.cursors[learner], &right.cursors[learner]);
+        let failed = cursors.0.phase == PHASE_FAILED && cursors.1.phase == PHASE_FAILED;
+        let at = (KERNEL, learner);
+        let part = |stride: usize| learner * stride..(learner + 1) * stride;
+        let (nets, lessons, rows) = (part(left.nets_stride), part(left.lessons_stride), part(left.rows_stride));
+        let output =
+            |word: (String, bool), left: u32, right: u32| (word.0, word.1 && (left, right) != (UNWRITTEN, UNWRITTEN));
+        let outputs = |left: &[u32], right: &[u32], place: &dyn Fn(usize) -> Place| {
+            first(at, (left, right), failed, |word| output(place(word), left[word], right[word]))
+        };
+        first(at, (words(cursors.0), words(cursors.1)), failed, |word| {
+            let (name, number) = field_of("Cursor", word);
+            (format!("cursor {name}"), number)
+        })
+        .or_else(|| {
+            let both = (bytemuck::cast_slice(&left.nets[nets.clone()]), bytemuck::cast_slice(&right.nets[nets]));
+            first(at, both, failed, |word| nets_word(skills, word))
+        })
+        .or_else(|| {
+            let place = |word| lessons_word(skills, word);
+            outputs(&left.lessons[lessons.clone()], &right.lessons[lessons], &place)
+        })
+        .or_else(|| outputs(&left.rows[rows.clone()], &right.rows[rows], &rows_word))
+    };
+    let learners = left.cursors.len().min(right.cursors.len());
+    let size = || sizes(KERNEL, learners, "learners", left.cursors.len(), right.cursors.len());
+    (0..learners).find_map(one).or_else(size)
+}
+
+/// The first difference between two tests, of which each learner took `episodes_per_learner` trials.
+pub fn evaluate(left: &[Episode], right: &[Episode], episodes_per_learner: usize) -> Option<Difference> {
+    const KERNEL: &str = "evaluate";
+    let each = episodes_per_learner.max(1);
+    let one = |(number, (left, right)): (usize, (&Episode, &Episode))| {
+        first((KERNEL, number / each), (words(left), words(right)), false, |word| {
+            let (name, number_like) = field_of("Episode", word);
+            (format!("test trial {}, {name}", number % each), number_like)
+        })
+    };
+    let size = || sizes(KERNEL, left.len().min(right.len()) / each, "test trials", left.len(), right.len());
+    left.iter().zip(right).enumerate().find_map(one).or_else(size)
+}
+
+/// The first difference between robots after kernel `step`.
+pub fn step(left: &[Robot], right: &[Robot]) -> Option<Difference> {
+    const KERNEL: &str = "step";
+    let one = |(number, (left, right)): (usize, (&Robot, &Robot))| {
+        first((KERNEL, number), (words(left), words(right)), false, |word| field_of("Robot", word))
+    };
+    let size = || sizes(KERNEL, left.len().min(right.len()), "robots", left.len(), right.len());
+    left.iter().zip(right).enumerate().find_map(one).or_else(size)
+}
+
+fn words<T: bytemuck::Pod>(record: &T) -> &[u32] {
+    bytemuck::cast_slice(std::slice::from_ref(record))
+}

@@ -1,0 +1,290 @@
+//! CPU and GPU leave the same bytes, and a kernel that is broken on purpose is found out and named.
+//!
+//! A machine without any adapter fails these tests: install software Vulkan (mesa-vulkan-drivers). Nothing
+//! here is skipped.
+
+use bytemuck::Zeroable;
+use skilltree::backend::cpu::CpuBackend;
+use skilltree::backend::gpu::source::{ADVANCE, EVALUATE, Kernel, Part, STEP};
+use skilltree::backend::gpu::{GpuBackend, GpuOptions};
+use skilltree::backend::parity::{self, Difference, UNWRITTEN};
+use skilltree::backend::{Backend, Cohort, Test};
+use skilltree::cli::Failure;
+use skilltree::config::{Overrides, load};
+use skilltree::experiment::parity::{Sample, Work, train};
+use skilltree::experiment::senses::{SILENT, robot_at};
+use skilltree::learner::layout::{Episode, PHASE_DONE, PHASE_FAILED, Robot};
+use skilltree::world::Pose;
+use std::path::Path;
+use std::process::Command;
+use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
+
+static GPU: LazyLock<Mutex<GpuBackend>> =
+    LazyLock::new(|| Mutex::new(GpuBackend::new(&GpuOptions::default()).expect("an adapter, if only a software one")));
+
+/// Two seeds of every arm, so both optimisers, taught and untaught.
+static WORK: LazyLock<Work> = LazyLock::new(|| {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/docking.toml");
+    let plan = load(&path, &Overrides::default()).expect("the config is good");
+    Work::new(&plan, 10).expect("the experiment can be set up")
+});
+
+/// What the CPU leaves of the first four learners, of which each has another arm.
+static FOUR: LazyLock<Sample> = LazyLock::new(|| train(few(0..4), &mut cpu()).expect("it runs"));
+
+fn gpu() -> MutexGuard<'static, GpuBackend> {
+    GPU.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn cpu() -> CpuBackend {
+    CpuBackend::new(0, None).expect("threads")
+}
+
+/// Some of the work's learners, before training.
+fn few(range: std::ops::Range<usize>) -> Cohort {
+    let all = &WORK.cohorts()[0];
+    let part = |stride: usize| range.start * stride..range.end * stride;
+    Cohort {
+        shared: all.shared.clone(),
+        settings: all.settings[part(all.skills)].to_vec(),
+        cursors: all.cursors[range.clone()].to_vec(),
+        nets: all.nets[part(all.nets_stride)].to_vec(),
+        lessons: all.lessons[part(all.lessons_stride)].to_vec(),
+        rows: all.rows[part(all.rows_stride)].to_vec(),
+        ..*all
+    }
+}
+
+#[test]
+fn shipped_kernels_leave_the_bytes_of_the_cpu() {
+    let expected = WORK.run(&mut cpu()).expect("it runs");
+    let found = WORK.run(&mut *gpu()).expect("it runs");
+    assert_eq!(expected.difference(&found), None);
+    let (before, after) = (&WORK.cohorts()[0], &expected.cohorts()[0]);
+    assert!(after.cursors.iter().all(|cursor| cursor.phase == PHASE_DONE && cursor.updates > 50));
+    let differs = |a: &[u32], b: &[u32]| a != b;
+    assert!(differs(&before.lessons, &after.lessons) && differs(&before.rows, &after.rows));
+    assert!(before.nets != after.nets && before.cursors != after.cursors);
+    assert!(expected.robots().iter().flatten().any(|robot| robot.events & 2 != 0), "nobody bumped into anything");
+    assert!(expected.robots().iter().flatten().all(|robot| robot.events != UNWRITTEN));
+    assert!(expected.bytes() > 1 << 20);
+
+    // How often the learners are interrupted, and beside whom they train, changes nothing.
+    let cut = GpuOptions { quanta: Some(3), shard: Some(4), ..GpuOptions::default() };
+    let interrupted = WORK.run(&mut GpuBackend::new(&cut).expect("an adapter")).expect("it runs");
+    assert_eq!(expected.difference(&interrupted), None);
+    let single = train(few(3..4), &mut *gpu()).expect("it runs");
+    let four = &FOUR.cohorts()[0];
+    assert_eq!(single.cohorts()[0].cursors[0], four.cursors[3]);
+    assert!(single.cohorts()[0].nets[..] == four.nets[3 * four.nets_stride..]);
+}
+
+/// The shipped kernel with one statement of one file replaced.
+fn broken(kernel: Kernel, path: &str, from: &str, to: &str) -> Kernel {
+    let mut parts = kernel.parts.to_vec();
+    let part = parts.iter_mut().find(|part| part.path == path).expect("a part of the kernel");
+    assert_eq!(part.text.matches(from).count(), 1, "`{from}` must stand in {path} once");
+    *part = Part { path: part.path, text: part.text.replace(from, to).leak() };
+    Kernel { parts: parts.leak(), ..kernel }
+}
+
+/// What a broken kernel does, with the shipped one put back.
+fn with<T>(kernel: Kernel, shipped: Kernel, act: impl FnOnce(&mut GpuBackend) -> T) -> T {
+    let mut gpu = gpu();
+    gpu.replace(kernel);
+    let found = act(&mut gpu);
+    gpu.replace(shipped);
+    found
+}
+
+/// The difference that a broken `advance` makes to four learners.
+fn trained_with(kernel: Kernel) -> Difference {
+    let found = with(kernel, ADVANCE, |gpu| train(few(0..4), gpu)).expect("it runs");
+    FOUR.difference(&found).expect("a difference")
+}
+
+/// The difference that a broken `evaluate` makes to a test of four trained learners.
+fn tested_with(kernel: Kernel) -> Difference {
+    let trained = &FOUR.cohorts()[0];
+    let test = |backend: &mut dyn Backend| {
+        backend.load(trained.clone()).expect("it fits");
+        backend.evaluate(Test { skill: 0, number: 9, episodes: 7 }).expect("it runs")
+    };
+    let (expected, found) = (test(&mut cpu()), with(kernel, EVALUATE, |gpu| test(gpu)));
+    parity::evaluate(&expected, &found, 7).expect("a difference")
+}
+
+#[test]
+fn one_last_place_in_one_lane_of_one_learner_is_named() {
+    let kernel = broken(
+        ADVANCE,
+        "qnet/forward.wgsl",
+        "let activation = squash(sum);",
+        "var activation = squash(sum);
+        if lane == 5u && base == 2u * dispatch.nets_stride {
+            activation = bitcast<f32>(bitcast<u32>(activation) + 1u);
+        }",
+    );
+    let found = trained_with(kernel);
+    assert_eq!((found.kernel, found.learner, found.finite), ("advance", 2, true), "{found}");
+    assert!(found.field.starts_with("cursor ") || found.field.starts_with("nets word "), "{found}");
+    assert!(format!("{found}").starts_with(&format!("kernel advance, learner 2: {}: 0x", found.field)));
+}
+
+#[test]
+fn one_last_place_in_one_test_trial_is_named() {
+    let kernel = broken(
+        EVALUATE,
+        "evaluate.wgsl",
+        "episode.x = moved.x;",
+        "episode.x = moved.x;
+        if lane == 0u && learner == 3u && number == 5u && episode.step == 0u {
+            episode.x = bitcast<f32>(bitcast<u32>(moved.x) + 1u);
+        }",
+    );
+    let found = tested_with(kernel);
+    assert_eq!((found.kernel, found.learner), ("evaluate", 3), "{found}");
+    assert!(found.field.starts_with("test trial 5, "), "{found}");
+}
+
+/// Robots stand so near to where a reading changes that one of them reads another inch.
+#[test]
+fn one_last_place_in_one_ray_of_the_sonar_is_named() {
+    let kernel = broken(
+        STEP,
+        "skill/observe.wgsl",
+        "reading(range, error)",
+        "reading(select(range, bitcast<f32>(bitcast<u32>(range) + 1u), lane == 0u), error)",
+    );
+    let x = |place: u32| f32::from_bits(24.5_f32.to_bits() - 32 + place);
+    let robots: Vec<Robot> =
+        (0..64).map(|place| robot_at(Pose { x: x(place), y: 200.0, heading: 180.0 }, &SILENT, 0, 0)).collect();
+    let shared = &WORK.cohorts()[0].shared;
+    let (mut expected, mut found) = (robots.clone(), robots);
+    cpu().step(shared, &mut expected, 1).expect("it runs");
+    let ahead = |robot: &Robot| robot.record[0] & 0xff;
+    let edge = expected.iter().rposition(|robot| ahead(robot) == 24).expect("one that reads 24 inches");
+    with(kernel, STEP, |gpu| gpu.step(shared, &mut found, 1)).expect("it runs");
+    let found = parity::step(&expected, &found).expect("a difference");
+    assert_eq!((found.kernel, found.learner), ("step", edge), "{found}");
+    assert_eq!((found.left & 0xff, found.right & 0xff), (24, 25), "{found}");
+    assert_eq!(found.field, "record word 0 (sonar 0 to 3)");
+}
+
+/// Zeroes would hide a column that is never written; the pattern that outputs start from does not.
+#[test]
+fn a_word_that_is_not_written_is_named() {
+    let kernel = broken(ADVANCE, "lesson/record.wgsl", "rows[at + 7u] = taught;", "");
+    let found = trained_with(kernel);
+    assert_eq!((found.kernel, found.learner, found.right), ("advance", 0, UNWRITTEN), "{found}");
+    assert_eq!(found.field, "rows word 7 (row 0, taught)");
+    let kernel = broken(EVALUATE, "evaluate.wgsl", "episode.collisions = 0u;", "");
+    let found = tested_with(kernel);
+    assert_eq!((found.kernel, found.learner), ("evaluate", 0), "{found}");
+    assert_eq!(found.field, "test trial 0, collisions");
+}
+
+#[test]
+fn learners_that_swap_memory_are_named() {
+    let from = "rows_base = learner * dispatch.rows_stride;";
+    let kernel = broken(ADVANCE, "advance.wgsl", from, "rows_base = (learner ^ 1u) * dispatch.rows_stride;");
+    let found = trained_with(kernel);
+    assert_eq!((found.kernel, found.learner), ("advance", 0), "{found}");
+    assert!(found.field.starts_with("rows word "), "{found}");
+    let from = "let base = learner * dispatch.nets_stride;";
+    let kernel = broken(EVALUATE, "evaluate.wgsl", from, "let base = (learner ^ 1u) * dispatch.nets_stride;");
+    let found = tested_with(kernel);
+    assert_eq!((found.kernel, found.learner), ("evaluate", 0), "{found}");
+}
+
+/// Every part of a learner's memory has its name, and the first difference is the one that is reported.
+#[test]
+fn differences_are_named_in_order() {
+    let cohort = FOUR.cohorts()[0].clone();
+    let plan = cohort.shared.skills[0];
+    let mut other = cohort.clone();
+    let flip = |words: &mut [u32], at: usize| words[at] ^= 1;
+    let at = |stride: usize, word: usize| 3 * stride + word;
+    let says = |other: &Cohort, field: &str| {
+        let found = parity::advance(&cohort, other).expect("a difference");
+        let says = format!("kernel advance, learner 3: {field}: {:#010x} against {:#010x}", found.left, found.right);
+        assert_eq!((found.to_string(), found.left), (says, found.right ^ 1));
+    };
+    flip(&mut other.rows, at(cohort.rows_stride, 12));
+    says(&other, "rows word 12 (row 1, reward)");
+    let lesson = (plan.lesson_stride + 4 + 2 * 10 + 7) as usize;
+    flip(&mut other.lessons, at(cohort.lessons_stride, lesson));
+    says(&other, &format!("lessons word {lesson} (skill 0, slot 1, step 2, record word 7 (compass))"));
+    let header = plan.lesson_stride as usize + 1;
+    flip(&mut other.lessons, at(cohort.lessons_stride, header));
+    says(&other, &format!("lessons word {header} (skill 0, slot 1, end)"));
+    let nets = |other: &mut Cohort, word: usize| flip(bytemuck::cast_slice_mut(&mut other.nets), word);
+    let rows = plan.rows as usize;
+    let weight = |child: usize, slab: usize, row: usize, unit: usize| ((child * 3 + slab) * rows + row) * 32 + unit;
+    let inputs = plan.inputs as usize;
+    for (word, text) in [
+        (plan.clock_offset as usize + 18, "child 2, clock of second moments".to_owned()),
+        (plan.clock_offset as usize + 2, "child 2, clock of first moments".to_owned()),
+        (weight(5, 2, inputs, 31), "child 5, second moment of the hidden bias, unit 31".to_owned()),
+        (weight(4, 1, inputs + 2, 0), "child 4, first moment of the output bias, unit 0".to_owned()),
+        (weight(2, 0, inputs + 1, 6), "child 2, output weight, unit 6".to_owned()),
+        (weight(2, 0, 17, 5), "child 2, weight of input 17, unit 5".to_owned()),
+    ] {
+        nets(&mut other, at(cohort.nets_stride, word));
+        says(&other, &format!("nets word {word} (skill 0, {text})"));
+    }
+    flip(bytemuck::cast_slice_mut(&mut other.cursors), 3 * 24 + 21);
+    says(&other, "cursor updates");
+    flip(bytemuck::cast_slice_mut(&mut other.cursors), 3 * 24 + 6);
+    says(&other, "cursor heading");
+    other.cursors.pop();
+    let found = parity::advance(&cohort, &other).expect("a difference");
+    assert_eq!((found.field.as_str(), found.left, found.right), ("number of learners", 4, 3));
+}
+
+#[test]
+fn a_number_that_is_not_finite_is_a_difference_on_both_sides_too() {
+    let mut cohort = FOUR.cohorts()[0].clone();
+    assert_eq!(parity::advance(&cohort, &cohort), None);
+    let word = cohort.nets_stride + 40;
+    cohort.nets[word] = f32::NAN;
+    let found = parity::advance(&cohort, &cohort).expect("a difference");
+    let says = "kernel advance, learner 1: nets word 40 (skill 0, child 0, weight of input 1, unit 8): \
+                0x7fc00000 against 0x7fc00000, not finite";
+    assert_eq!(found.to_string(), says);
+    // A learner that has failed may hold anything, but the same on both sides.
+    cohort.cursors[1].phase = PHASE_FAILED;
+    assert_eq!(parity::advance(&cohort, &cohort), None);
+    let mut other = cohort.clone();
+    other.nets[word] = f32::INFINITY;
+    assert_eq!(parity::advance(&cohort, &other).map(|found| found.finite), Some(true));
+    let mut episodes = vec![Episode::zeroed(); 6];
+    episodes[4].reward = f32::NEG_INFINITY;
+    let found = parity::evaluate(&episodes, &episodes, 3).expect("a difference");
+    assert_eq!((found.learner, found.field.as_str(), found.finite), (1, "test trial 1, reward", false));
+    let mut robots = vec![Robot::zeroed(); 2];
+    robots[1].events = u32::MAX;
+    assert_eq!(parity::step(&robots, &robots), None);
+    robots[1].record[7] = f32::NAN.to_bits();
+    let found = parity::step(&robots, &robots).expect("a difference");
+    let says = "kernel step, robot 1: record word 7 (compass): 0x7fc00000 against 0x7fc00000, not finite";
+    assert_eq!(found.to_string(), says);
+    assert!(parity::evaluate(&episodes[..3], &episodes, 3).is_some() && parity::step(&robots[..1], &robots).is_some());
+}
+
+#[test]
+fn users_can_ask_for_parity() {
+    let _alone = gpu();
+    let give = |line: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_skilltree"));
+        command.current_dir(env!("CARGO_MANIFEST_DIR")).args(line).output().expect("it starts")
+    };
+    let output = give(&["devices", "--parity", "configs/docking.toml", "--learners", "2"]);
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert_eq!(output.status.code(), Some(0), "{text}{}", String::from_utf8_lossy(&output.stderr));
+    assert!(text.contains("\n  parity: equal, 2 learners, "), "{text}");
+    assert!(output.stderr.is_empty());
+    assert_eq!(Failure::Parity { differing: 1, adapters: 1 }.code(), 1);
+    let output = give(&["devices", "--learners", "2"]);
+    assert_eq!(output.status.code(), Some(2), "--learners is for --parity alone");
+}
