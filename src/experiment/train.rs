@@ -27,13 +27,9 @@ pub fn train(
     for skill in 0..group.shape.skills.len() {
         for point in test_points(plan, group, skill) {
             let stop = Stop { skill: skill as u32, trial: point };
-            let cursors = loop {
-                let cursors = backend.advance(stop)?;
+            let cursors = reach(backend, stop, &mut |cursors| {
                 progress(learners.iter().zip(cursors).map(|(id, cursor)| trials_of(plan, *id, cursor)).sum());
-                if cursors.iter().all(|cursor| stop.holds(cursor)) {
-                    break cursors.to_vec();
-                }
-            };
+            })?;
             let wanted = |id: &LearnerId| tested_at(plan, *id, skill, point);
             if plan.evaluate.episodes == 0 || !learners.iter().any(wanted) {
                 continue;
@@ -51,8 +47,7 @@ pub fn train(
         }
     }
     // The last trial of the last skill is behind every learner: let them close.
-    let done = Stop { skill: u32::MAX, trial: u32::MAX };
-    while !backend.advance(done)?.iter().all(|cursor| done.holds(cursor)) {}
+    reach(backend, Stop { skill: u32::MAX, trial: u32::MAX }, &mut |_| {})?;
     let cohort = backend.memory()?;
     for (index, result) in results.iter_mut().enumerate() {
         let cursor = &cohort.cursors[index];
@@ -63,6 +58,24 @@ pub fn train(
         result.updates = cursor.updates;
     }
     Ok(results)
+}
+
+/// Moves all learners on until they hold at `stop`, showing where they stand after every stretch.
+fn reach(backend: &mut dyn Backend, stop: Stop, show: &mut dyn FnMut(&[Cursor])) -> Result<Vec<Cursor>, BackendError> {
+    let mut last = Vec::new();
+    loop {
+        let cursors = backend.advance(stop)?;
+        show(cursors);
+        if cursors.iter().all(|cursor| stop.holds(cursor)) {
+            return Ok(cursors.to_vec());
+        }
+        // Every stretch moves some learner; a device on which none moves has stopped computing.
+        if cursors == last {
+            let message = "the learners no longer move".to_owned();
+            return Err(BackendError::Device { kernel: "advance", message });
+        }
+        last = cursors.to_vec();
+    }
 }
 
 /// Numbers of trials after which some learner of the group is tested in a skill, ascending.
