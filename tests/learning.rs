@@ -324,7 +324,7 @@ fn adam_follows_the_papers_formula() {
     let (rate, beta1, beta2) = (f64::from(settings.rate), f64::from(settings.beta1), f64::from(settings.beta2));
     let epsilon2 = f64::from(settings.epsilon2);
     assert!((rate, beta1, beta2) == (f64::from(0.0015_f32), f64::from(0.9_f32), f64::from(0.999_f32)));
-    assert!(epsilon2 > 0.0 && epsilon2 < 1.0e-10);
+    assert_eq!(epsilon2, f64::from(0.001_f32 * 0.001_f32));
     let mut next = random(6);
     let child = 3;
     let mut net = Net::of(&bench, child);
