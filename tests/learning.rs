@@ -319,12 +319,20 @@ fn momentum_carries_the_last_change_on() {
 
 #[test]
 fn adam_follows_the_papers_formula() {
-    let mut bench = Bench::new(&["learning.optimiser=\"adam\"", "learning.init=0.3"]);
+    adam_follows_the_formula("1e-8", "0.0015");
+    // An epsilon as large as the gradients: a higher rate keeps the changes above the weights' last places.
+    adam_follows_the_formula("1e-3", "0.05");
+}
+
+fn adam_follows_the_formula(epsilon: &str, rate: &str) {
+    let (of_epsilon, of_rate) = (format!("learning.epsilon={epsilon}"), format!("learning.rate={rate}"));
+    let mut bench = Bench::new(&["learning.optimiser=\"adam\"", "learning.init=0.3", &of_epsilon, &of_rate]);
+    let (epsilon, given): (f32, f32) = (epsilon.parse().expect("a number"), rate.parse().expect("a number"));
     let settings = bench.settings[0];
     let (rate, beta1, beta2) = (f64::from(settings.rate), f64::from(settings.beta1), f64::from(settings.beta2));
     let epsilon2 = f64::from(settings.epsilon2);
-    assert!((rate, beta1, beta2) == (f64::from(0.0015_f32), f64::from(0.9_f32), f64::from(0.999_f32)));
-    assert_eq!(epsilon2, f64::from(0.001_f32 * 0.001_f32));
+    assert_eq!((rate, beta1, beta2), (f64::from(given), f64::from(0.9_f32), f64::from(0.999_f32)));
+    assert_eq!(epsilon2, f64::from(epsilon * epsilon));
     let mut next = random(6);
     let child = 3;
     let mut net = Net::of(&bench, child);
