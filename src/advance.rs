@@ -4,8 +4,9 @@
 //! The learner is a state machine whose whole state is in its [`Cursor`](crate::learner::layout::Cursor), so
 //! it makes no difference how often it is interrupted. Twin: `shaders/advance.wgsl`.
 
-use crate::learner::layout::{Dispatch, PHASE_ACT, PHASE_DONE, PHASE_REPLAY, PHASE_START, PHASE_TEACH, RECORD_WORDS};
+use crate::learner::layout::{Dispatch, RECORD_WORDS};
 use crate::learner::memory::{Learner, Scratch};
+use crate::learner::phase::{PHASE_ACT, PHASE_DONE, PHASE_REPLAY, PHASE_START, PHASE_TEACH};
 use crate::lesson::record::{CUT, ENDED, note, write_header, write_record, write_row};
 use crate::lesson::replay::{begin_replay, lesson_word, recent_lesson, replay_step, taught_lesson};
 use crate::math::rng::{Purpose, Stream, below, draw, noise, roll};

@@ -13,11 +13,15 @@ use skilltree::cli::Failure;
 use skilltree::config::{Overrides, load};
 use skilltree::experiment::parity::{Sample, Work, train};
 use skilltree::experiment::senses::{SILENT, robot_at};
-use skilltree::learner::layout::{Episode, PHASE_DONE, PHASE_FAILED, Robot};
+use skilltree::learner::layout::{Cursor, Episode, Robot};
+use skilltree::learner::phase::{PHASE_DONE, PHASE_FAILED};
 use skilltree::world::Pose;
 use std::path::Path;
 use std::process::Command;
 use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
+
+/// Words of a cursor.
+const CURSOR_WORDS: usize = size_of::<Cursor>() / 4;
 
 static GPU: LazyLock<Mutex<GpuBackend>> =
     LazyLock::new(|| Mutex::new(GpuBackend::new(&GpuOptions::default()).expect("an adapter, if only a software one")));
@@ -268,9 +272,9 @@ fn differences_are_named_in_order() {
         nets(&mut other, at(cohort.nets_stride, word));
         says(&other, &format!("nets word {word} (skill 0, {text})"));
     }
-    flip(bytemuck::cast_slice_mut(&mut other.cursors), 3 * 24 + 21);
+    flip(bytemuck::cast_slice_mut(&mut other.cursors), 3 * CURSOR_WORDS + 21);
     says(&other, "cursor updates");
-    flip(bytemuck::cast_slice_mut(&mut other.cursors), 3 * 24 + 6);
+    flip(bytemuck::cast_slice_mut(&mut other.cursors), 3 * CURSOR_WORDS + 6);
     says(&other, "cursor heading");
     other.cursors.truncate(3);
     let found = parity::advance(&cohort, &other).expect("a difference");

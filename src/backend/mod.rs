@@ -8,8 +8,9 @@ pub mod gpu;
 pub mod parity;
 
 use crate::evaluate::STATE_FRESH;
-use crate::learner::layout::{Cursor, Episode, PHASE_DONE, PHASE_START, Robot, Settings};
+use crate::learner::layout::{Cursor, Episode, Robot, Settings};
 use crate::learner::memory::Shared;
+use crate::learner::phase::{PHASE_DONE, PHASE_START};
 
 /// All memory of the learners that train together.
 #[derive(Debug, Clone)]

@@ -6,9 +6,8 @@
 //! lessons and rows, word by word.
 
 use super::Cohort;
-use crate::learner::layout::{
-    Episode, LANES, LAYOUTS, LESSON_HEADER, PHASE_FAILED, RECORD_WORDS, ROW_WORDS, Robot, SkillPlan,
-};
+use crate::learner::layout::{Episode, LANES, LAYOUTS, LESSON_HEADER, RECORD_WORDS, ROW_WORDS, Robot, SkillPlan};
+use crate::learner::phase::PHASE_FAILED;
 use crate::qnet::backward::CLOCK_SECOND;
 use std::fmt;
 

@@ -5,7 +5,8 @@ use super::result::{LearnerResult, RoomSums, TestResult};
 use crate::backend::{Backend, BackendError, Stop, Test};
 use crate::config::plan::Plan;
 use crate::evaluate::STATE_ACHIEVED;
-use crate::learner::layout::{Cursor, Episode, PHASE_FAILED, ROW_WORDS};
+use crate::learner::layout::{Cursor, Episode, ROW_WORDS};
+use crate::learner::phase::PHASE_FAILED;
 use glam::Vec2;
 
 /// Told how far a cohort is: trials finished by all its learners together.

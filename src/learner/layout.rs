@@ -1,47 +1,9 @@
 //! The words of every buffer that a kernel touches, written once.
 //!
-//! Each struct is declared here for Rust and, from the same lines, for WGSL: [`prelude`] is the text that
+//! Each struct is declared here for Rust and, from the same lines, for WGSL: [`super::prelude`] is the text that
 //! opens every shader. All fields are 32 bits wide, so both languages give them the same offsets.
 
 use bytemuck::{Pod, Zeroable};
-
-macro_rules! constants {
-    ($($(#[$doc:meta])* $name:ident = $value:expr;)*) => {
-        $($(#[$doc])* pub const $name: usize = $value;)*
-        /// Name and value of every constant that the shaders share.
-        pub const CONSTANTS: &[(&str, usize)] = &[$((stringify!($name), $name)),*];
-    };
-}
-
-macro_rules! shared {
-    ($($(#[$doc:meta])* struct $name:ident { $($(#[$field_doc:meta])* $field:ident: $kind:tt,)* })*) => {
-        $(
-            $(#[$doc])*
-            #[repr(C)]
-            #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-            pub struct $name { $($(#[$field_doc])* pub $field: shared!(@rust $kind),)* }
-        )*
-        /// WGSL text of every shared struct, in order of use.
-        pub const STRUCTS: &[&str] = &[$(concat!(
-            "struct ", stringify!($name), " {\n",
-            $("    ", stringify!($field), ": ", shared!(@wgsl $kind), ",\n",)*
-            "}\n"
-        )),*];
-        /// Name and size of every shared struct as Rust lays it out; name, offset in bytes and WGSL type of
-        /// each of its fields.
-        pub const LAYOUTS: &[(&str, usize, &[(&str, usize, &str)])] = &[$((
-            stringify!($name),
-            size_of::<$name>(),
-            &[$((stringify!($field), std::mem::offset_of!($name, $field), shared!(@wgsl $kind))),*],
-        )),*];
-    };
-    (@rust u32) => { u32 };
-    (@rust f32) => { f32 };
-    (@rust [$element:ident; $n:ident]) => { [$element; $n] };
-    (@wgsl u32) => { "u32" };
-    (@wgsl f32) => { "f32" };
-    (@wgsl [$element:ident; $n:ident]) => { concat!("array<", stringify!($element), ", ", stringify!($n), ">") };
-}
 
 constants! {
     /// Invocations of a workgroup; elements of every lane array.
@@ -66,7 +28,7 @@ constants! {
     MAX_SKILLS = 8;
     /// Words of one recorded step.
     RECORD_WORDS = 10;
-    /// Words that open a lesson: its length in steps, its end, whether it was taught, unused.
+    /// Words that open a lesson: its steps, how it ended, its reward, its collisions.
     LESSON_HEADER = 4;
     /// Kinds of events that a reward can name.
     EVENTS = 3;
@@ -97,20 +59,8 @@ shared! {
         charger: u32,
     }
 
-    /// A room's rectangle, inches.
-    struct RoomArea {
-        /// Left.
-        x0: f32,
-        /// Bottom.
-        y0: f32,
-        /// Right.
-        x1: f32,
-        /// Top.
-        y1: f32,
-    }
-
-    /// The box round a doorway in which a robot has not yet passed it, inches.
-    struct Doorway {
+    /// A rectangle, inches.
+    struct Area {
         /// Left.
         x0: f32,
         /// Bottom.
@@ -150,9 +100,9 @@ shared! {
         /// The segments.
         segment: [Segment; MAX_SEGMENTS],
         /// The rooms.
-        room: [RoomArea; MAX_ROOMS],
-        /// The doorways.
-        doorway: [Doorway; MAX_DOORS],
+        room: [Area; MAX_ROOMS],
+        /// The boxes round the doorways, in which a robot has not yet passed them.
+        doorway: [Area; MAX_DOORS],
     }
 
     /// Noise of a robot, as passed to the functions that need it.
@@ -341,8 +291,6 @@ shared! {
         updates: u32,
         /// 1 where the observation that ends the lesson in replay is still to be valued.
         replay_open: u32,
-        /// Keeps the size at 24 words.
-        padding: u32,
     }
 
     /// A test trial.
@@ -435,44 +383,3 @@ shared! {
         first: u32,
     }
 }
-
-/// The text that opens every shader: constants, random purposes and structs.
-pub fn prelude() -> String {
-    use std::fmt::Write;
-    let mut text = String::new();
-    for (name, value) in CONSTANTS {
-        let _ = writeln!(text, "const {name}: u32 = {value}u;");
-    }
-    for (name, purpose) in crate::math::rng::PURPOSES {
-        let _ = writeln!(text, "const {name}: u32 = {}u;", *purpose as u32);
-    }
-    for (name, phase) in PHASES {
-        let _ = writeln!(text, "const {name}: u32 = {phase}u;");
-    }
-    for declaration in STRUCTS {
-        text.push_str(declaration);
-    }
-    text
-}
-
-/// Learning from the taught lessons before the first trial.
-pub const PHASE_TEACH: u32 = 0;
-/// About to begin a trial; where learners wait for a test.
-pub const PHASE_START: u32 = 1;
-/// In a trial.
-pub const PHASE_ACT: u32 = 2;
-/// Replaying after a trial.
-pub const PHASE_REPLAY: u32 = 3;
-/// All skills trained.
-pub const PHASE_DONE: u32 = 4;
-/// Frozen: a number stopped being finite.
-pub const PHASE_FAILED: u32 = 5;
-/// Name and code of every phase.
-pub const PHASES: &[(&str, u32)] = &[
-    ("PHASE_TEACH", PHASE_TEACH),
-    ("PHASE_START", PHASE_START),
-    ("PHASE_ACT", PHASE_ACT),
-    ("PHASE_REPLAY", PHASE_REPLAY),
-    ("PHASE_DONE", PHASE_DONE),
-    ("PHASE_FAILED", PHASE_FAILED),
-];

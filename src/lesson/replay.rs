@@ -4,8 +4,9 @@
 //! bracket 0 at a goal. A step whose action the current policy would hardly take is not learned, and cuts
 //! the chain: there max Q stands for u. The form is recalled from Lin's other papers, so it is our choice.
 
-use crate::learner::layout::{LESSON_HEADER, PHASE_FAILED, RECORD_WORDS};
+use crate::learner::layout::{LESSON_HEADER, RECORD_WORDS};
 use crate::learner::memory::{Learner, Scratch};
+use crate::learner::phase::PHASE_FAILED;
 use crate::lesson::record::CUT;
 use crate::math::functions::{exponential, is_number, ln};
 use crate::math::rng::{Purpose, Stream, below, draw, unit};

@@ -2,7 +2,7 @@
 
 use super::geometry::{distance, touch};
 use super::{Door, ROBOT_RADIUS, Segment, World};
-use crate::learner::layout::{self, Doorway, RoomArea, WorldPlan};
+use crate::learner::layout::{self, Area, WorldPlan};
 use bytemuck::Zeroable;
 use glam::DVec2;
 
@@ -76,7 +76,7 @@ fn plan(world: &World) -> WorldPlan {
     }
     for (to, room) in plan.room.iter_mut().zip(&world.rooms) {
         let (min, max) = (room.area.min, room.area.max);
-        *to = RoomArea { x0: min.x, y0: min.y, x1: max.x, y1: max.y };
+        *to = Area { x0: min.x, y0: min.y, x1: max.x, y1: max.y };
     }
     for (to, from) in plan.doorway.iter_mut().zip(&world.doors) {
         *to = doorway(from);
@@ -100,13 +100,13 @@ fn segment(segment: &Segment) -> layout::Segment {
 }
 
 /// The opening, a robot's radius wider on each side and as deep as the robot must go to have passed it.
-fn doorway(door: &Door) -> Doorway {
+fn doorway(door: &Door) -> Area {
     let normal = door.normal.abs().as_dvec2();
     let across = DVec2::ONE - normal;
     let half = across * (f64::from(door.width) / 2.0 + f64::from(ROBOT_RADIUS))
         + normal * (f64::from(door.depth) / 2.0 + PASSED);
     let (low, high) = (door.centre.as_dvec2() - half, door.centre.as_dvec2() + half);
-    Doorway { x0: low.x as f32, y0: low.y as f32, x1: high.x as f32, y1: high.y as f32 }
+    Area { x0: low.x as f32, y0: low.y as f32, x1: high.x as f32, y1: high.y as f32 }
 }
 
 /// Distance from a segment to the list cell with this left bottom corner.

@@ -1,6 +1,6 @@
 //! The text of every shipped kernel: an ordered list of parts, opened by the shared constants and structs.
 
-use crate::learner::layout::prelude;
+use crate::learner::prelude::prelude;
 
 /// One WGSL file.
 #[derive(Debug, Clone, Copy)]

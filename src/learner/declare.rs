@@ -1,0 +1,39 @@
+//! Macros that declare constants and structs for Rust and, from the same lines, for WGSL.
+
+macro_rules! constants {
+    ($($(#[$doc:meta])* $name:ident = $value:expr;)*) => {
+        $($(#[$doc])* pub const $name: usize = $value;)*
+        /// Name and value of every constant that the shaders share.
+        pub const CONSTANTS: &[(&str, usize)] = &[$((stringify!($name), $name)),*];
+    };
+}
+
+macro_rules! shared {
+    ($($(#[$doc:meta])* struct $name:ident { $($(#[$field_doc:meta])* $field:ident: $kind:tt,)* })*) => {
+        $(
+            $(#[$doc])*
+            #[repr(C)]
+            #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+            pub struct $name { $($(#[$field_doc])* pub $field: shared!(@rust $kind),)* }
+        )*
+        /// WGSL text of every shared struct, in order of use.
+        pub const STRUCTS: &[&str] = &[$(concat!(
+            "struct ", stringify!($name), " {\n",
+            $("    ", stringify!($field), ": ", shared!(@wgsl $kind), ",\n",)*
+            "}\n"
+        )),*];
+        /// Name and size of every shared struct as Rust lays it out; name, offset in bytes and WGSL type of
+        /// each of its fields.
+        pub const LAYOUTS: &[(&str, usize, &[(&str, usize, &str)])] = &[$((
+            stringify!($name),
+            size_of::<$name>(),
+            &[$((stringify!($field), std::mem::offset_of!($name, $field), shared!(@wgsl $kind))),*],
+        )),*];
+    };
+    (@rust u32) => { u32 };
+    (@rust f32) => { f32 };
+    (@rust [$element:ident; $n:ident]) => { [$element; $n] };
+    (@wgsl u32) => { "u32" };
+    (@wgsl f32) => { "f32" };
+    (@wgsl [$element:ident; $n:ident]) => { concat!("array<", stringify!($element), ", ", stringify!($n), ">") };
+}
