@@ -1,10 +1,18 @@
 //! The random draws of the bootstrap: seeded, so that a report comes out the same every time.
 
 use crate::math::rng::philox;
+use rand::{RngExt, TryRng};
+use std::convert::Infallible;
 
 /// Draws indices uniformly and without bias. Nothing in an experiment depends on it.
 #[derive(Debug, Clone)]
 pub struct Resampler {
+    words: Words,
+}
+
+/// The words of one Philox stream, for `rand`'s distributions.
+#[derive(Debug, Clone)]
+struct Words {
     seed: u32,
     /// Number of the next block of four words.
     block: u64,
@@ -16,29 +24,38 @@ pub struct Resampler {
 impl Resampler {
     /// The same seed gives the same draws.
     pub fn new(seed: u32) -> Self {
-        Self { seed, block: 0, words: [0; 4], left: 0 }
+        Self { words: Words { seed, block: 0, words: [0; 4], left: 0 } }
     }
 
-    /// Uniform in `0..count`; 0 if `count` is 0. Counts above `u32::MAX` are taken as that.
+    /// Uniform in `0..count`; 0 if `count` is 0.
     pub fn index(&mut self, count: usize) -> usize {
-        let count = u32::try_from(count).unwrap_or(u32::MAX);
-        // Multiply and keep the high half; the few low halves that would favour some indices are drawn again.
-        let unfair = count.wrapping_neg().checked_rem(count).unwrap_or(0);
-        loop {
-            let wide = u64::from(self.word()) * u64::from(count);
-            if wide as u32 >= unfair {
-                return (wide >> 32) as usize;
-            }
-        }
+        if count == 0 { 0 } else { self.words.random_range(0..count) }
     }
+}
 
-    fn word(&mut self) -> u32 {
+impl TryRng for Words {
+    type Error = Infallible;
+
+    fn try_next_u32(&mut self) -> Result<u32, Infallible> {
         if self.left == 0 {
             self.words = philox([self.block as u32, (self.block >> 32) as u32, 0, 0], [self.seed, 0]);
             self.block += 1;
             self.left = 4;
         }
         self.left -= 1;
-        self.words[3 - self.left]
+        Ok(self.words[3 - self.left])
+    }
+
+    fn try_next_u64(&mut self) -> Result<u64, Infallible> {
+        let low = u64::from(self.try_next_u32()?);
+        Ok(low | u64::from(self.try_next_u32()?) << 32)
+    }
+
+    fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Infallible> {
+        for chunk in bytes.chunks_mut(4) {
+            let word = self.try_next_u32()?.to_le_bytes();
+            chunk.copy_from_slice(&word[..chunk.len()]);
+        }
+        Ok(())
     }
 }
