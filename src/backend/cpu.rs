@@ -159,7 +159,7 @@ impl Backend for CpuBackend {
         None
     }
 
-    fn cohort_size(&self, _largest_stride: usize, _bytes_per_learner: usize) -> usize {
+    fn cohort_size(&self, _bytes_per_learner: usize) -> usize {
         COHORT.max(self.pool.current_num_threads() * 4)
     }
 

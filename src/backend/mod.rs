@@ -83,9 +83,8 @@ pub trait Backend {
     /// The adapter's name, if there is one.
     fn adapter(&self) -> Option<String>;
 
-    /// Learners that best train together, given the words that one learner takes in the largest buffer and
-    /// the bytes that it takes in all. No result depends on it.
-    fn cohort_size(&self, largest_stride: usize, bytes_per_learner: usize) -> usize;
+    /// Learners that best train together, given the bytes that one takes. No result depends on it.
+    fn cohort_size(&self, bytes_per_learner: usize) -> usize;
 
     /// Takes the cohort's memory; everything else works on it until the next load.
     ///

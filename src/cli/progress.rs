@@ -59,7 +59,7 @@ impl Observer for RunProgress {
         }
     }
 
-    fn committed(&mut self, _learners: usize, finished: usize) {
+    fn committed(&mut self, finished: usize) {
         if self.bar.is_none() {
             tell(&format!("{finished} of {} learners trained, tested and saved", self.learners));
         }

@@ -5,14 +5,13 @@ use super::result::{LearnerResult, RoomSums};
 use crate::config::plan::Plan;
 use crate::learner::layout::{LANES, ROW_WORDS};
 use crate::qnet::forward::net_of;
-use crate::record::tables::{EVALUATIONS, EvaluationRow, Names, TRIALS, TrialRow, write_evaluations, write_trials};
+use crate::record::tables::{
+    EVALUATIONS, EvaluationRow, Names, PLANNER, TRIALS, TrialRow, write_evaluations, write_trials,
+};
 use crate::record::weights::{NetWeights, SkillWeights, write_weights};
 use crate::record::{PlaceReading, RecordError, places};
 use glam::Vec2;
 use std::collections::BTreeMap;
-
-/// Name under which the planner's own tests stand in the table of evaluations.
-pub const PLANNER: &str = "planner";
 
 /// All results of an experiment.
 #[derive(Debug)]
@@ -28,7 +27,7 @@ pub struct Results<'a> {
 }
 
 impl Results<'_> {
-    /// Paths and bytes of all result files, made one at a time.
+    /// Paths and bytes of all result files.
     ///
     /// # Errors
     /// Where a table cannot be written.

@@ -26,8 +26,8 @@ pub enum RunError {
 pub trait Observer {
     /// Trials finished so far, of all learners together, those of an earlier start included.
     fn trials(&mut self, finished: u64);
-    /// A cohort's results are on disk.
-    fn committed(&mut self, learners: usize, finished: usize);
+    /// A cohort's results are on disk; so many learners are now.
+    fn committed(&mut self, finished: usize);
 }
 
 /// How the run is carried out; changes no result.
@@ -56,14 +56,13 @@ pub fn run(
     observer.trials(finished);
     for group in groups {
         let open: Vec<LearnerId> = group.learners(plan).into_iter().filter(|id| !learners.contains_key(id)).collect();
-        let largest = group.shape.nets_stride.max(group.shape.lessons_stride).max(group.shape.rows_stride);
-        let size = backend.cohort_size(largest, group.shape.bytes_per_learner());
+        let size = backend.cohort_size(group.shape.bytes_per_learner());
         for cohort in open.chunks(options.cohort.unwrap_or(size).max(1)) {
             let results = train(plan, group, cohort, backend, &mut |trials| observer.trials(finished + trials))?;
             folder.commit_part(&part_name(cohort), &encode(&results))?;
             finished += cohort.iter().map(trials_of).sum::<u64>();
             learners.extend(results.into_iter().map(|result| (result.id, result)));
-            observer.committed(cohort.len(), learners.len());
+            observer.committed(learners.len());
         }
     }
     let failed = learners.values().filter(|result| result.failed).count();

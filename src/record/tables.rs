@@ -8,6 +8,8 @@ use std::path::Path;
 pub const TRIALS: &str = "trials.parquet";
 /// File name of the tests.
 pub const EVALUATIONS: &str = "evaluations.parquet";
+/// The arm whose rows are the planner's own tests: a bound, not a learner.
+pub const PLANNER: &str = "planner";
 
 /// What the `arm`, `skill` and `room` fields of rows index into. When read back, names come in the order in which the
 /// rows first use them.

@@ -1,10 +1,8 @@
 //! From rows of sums to one number per seed.
 
+use crate::record::tables::PLANNER;
 use crate::record::{EvaluationRow, Names};
 use std::collections::{BTreeMap, BTreeSet};
-
-/// The arm whose rows are the planner's own tests: a bound, not a learner.
-pub const PLANNER: &str = "planner";
 
 /// Tests of one learner at one moment, summed over starting rooms.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

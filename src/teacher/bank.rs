@@ -1,12 +1,12 @@
 //! Demonstrations: the bank of taught lessons, and the planner's own tests.
 
-use super::planner::{Planner, collided, origin_of};
+use super::planner::{Planner, origin_of};
 use crate::config::plan::Skill;
 use crate::learner::layout::{Settings, SkillPlan};
 use crate::learner::memory::{Scratch, Shared};
 use crate::lesson::record::{CUT, ENDED, note, write_header, write_record};
 use crate::math::rng::{Purpose, Stream, draw, noise, roll};
-use crate::robot::motion::{NO_ACTION, move_body};
+use crate::robot::motion::{COLLISION, NO_ACTION, move_body};
 use crate::robot::noise::noise_of;
 use crate::skill::observe::{DICE_ACTUATOR, observe};
 use crate::skill::reward::{passed_door, reward_of, room_of};
@@ -158,7 +158,7 @@ impl Teacher<'_> {
             touch = moved.bumpers;
             step += 1;
             reward += earned;
-            collisions += u32::from(collided(events));
+            collisions += u32::from(events & COLLISION != 0);
             if events & self.plan.ends != 0 {
                 end = ENDED;
             } else if step >= self.settings.max_steps {

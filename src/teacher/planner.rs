@@ -5,7 +5,7 @@
 
 use crate::config::plan::{Action, Event, Noise, NoiseKind, Skill};
 use crate::robot::floor::Floor;
-use crate::robot::motion::{COLLISION, PASSED_DOOR, move_body};
+use crate::robot::motion::{PASSED_DOOR, move_body};
 use crate::skill::reward::{NOWHERE, passed_door, room_of};
 use crate::world::{Pose, World};
 use glam::Vec2;
@@ -287,11 +287,6 @@ fn slips(noise: &Noise) -> [(f32, f32); 3] {
     };
     let reach = noise.actuator * far;
     [(1.0 - reach, weight), (1.0, 1.0 - 2.0 * weight), (1.0 + reach, weight)]
-}
-
-/// Whether an event set holds a collision; the demonstrations count them.
-pub fn collided(events: u32) -> bool {
-    events & COLLISION != 0
 }
 
 /// Room in which a trial that begins here begins.
