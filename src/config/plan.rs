@@ -19,12 +19,12 @@ pub struct Plan {
     pub run_seed: u32,
     /// One learner per arm and seed. Ascending, without repeats.
     pub seeds: Vec<u32>,
-    /// The floor plan.
-    pub world: World,
-    /// The world file's text, kept so that a run folder can hold it.
-    pub world_text: String,
+    /// The floor plans that arms and alterations name, each once; the config's own is the first.
+    pub worlds: Vec<PlacedWorld>,
     /// The experimental conditions, in the order of the file.
     pub arms: Vec<Arm>,
+    /// Other circumstances in which the learned roots are tested after their last trial, without training.
+    pub alterations: Vec<Alteration>,
     /// When and how learners are tested.
     pub evaluate: Evaluate,
     /// The teacher's bank and how it demonstrates.
@@ -33,15 +33,69 @@ pub struct Plan {
     pub resolved: String,
 }
 
+impl Plan {
+    /// The config's own floor plan.
+    pub fn world(&self) -> &World {
+        &self.worlds[0].world
+    }
+
+    /// The floor plan in which an arm trains.
+    pub fn world_of(&self, arm: &Arm) -> &World {
+        &self.worlds[arm.world].world
+    }
+}
+
+/// A floor plan with the text that it was read from, kept so that a run folder can hold it.
+#[derive(Debug, Clone)]
+pub struct PlacedWorld {
+    /// The floor plan.
+    pub world: World,
+    /// The file's text.
+    pub text: String,
+    /// The file's name in a run folder.
+    pub file: String,
+}
+
 /// One experimental condition: the base config with this arm's changes applied.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Arm {
     /// Key of the arm in the config, `[a-z0-9-]+`.
     pub name: String,
-    /// The skills in training order; the last one is the root of the skill tree.
+    /// Index of its floor plan in [`Plan::worlds`].
+    pub world: usize,
+    /// The skills of the root's tree, children before parents; the last one is the root.
     pub skills: Vec<Skill>,
     /// Sensors and actuators of this arm's robots.
     pub noise: Noise,
+    /// What its robots remember within a trial, and the band beside a wall.
+    pub robot: Robot,
+}
+
+/// What the robots of an arm remember within a trial, and what counts as beside a wall. All ours.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Robot {
+    /// What is left, after each step, of the trace of having seen the light.
+    pub light_trace: f32,
+    /// The same of having passed a door.
+    pub door_trace: f32,
+    /// Weight of the past in the running means of ranges, 0 to below 1.
+    pub range_mean: f32,
+    /// Least reading, inches, at which the nearest thing on one side counts as a wall followed.
+    pub beside_near: f32,
+    /// Greatest such reading, inches.
+    pub beside_far: f32,
+}
+
+/// Other circumstances for skills that were learned without them (paper, section VII: "could adapt to small
+/// unexpected environmental changes without additional training").
+#[derive(Debug, Clone, PartialEq)]
+pub struct Alteration {
+    /// Key in the config.
+    pub name: String,
+    /// Index of the floor plan in [`Plan::worlds`].
+    pub world: usize,
+    /// Noise, or none for each arm's own.
+    pub noise: Option<Noise>,
 }
 
 /// A skill as defined in TOML.
@@ -51,14 +105,26 @@ pub struct Skill {
     pub name: String,
     /// The net's inputs, in order.
     pub inputs: Vec<Input>,
-    /// What the skill chooses among.
-    pub children: Vec<Action>,
+    /// What the skill chooses among: actions, or skills that stand before it.
+    pub children: Vec<Child>,
+    /// For each child, from what value on it is applicable; none for a child that always is.
+    pub applicable: Vec<Option<Threshold>>,
+    /// How a child is chosen.
+    pub choice: Choice,
+    /// Keeping to the chosen child.
+    pub persistence: Persistence,
+    /// Index of the skill whose nets this one uses as their mirror image; it has no trials of its own.
+    pub mirror: Option<usize>,
+    /// Whether the planner, which knows floor plan and pose, stands in for the nets. Privileged.
+    pub planned: bool,
     /// Amount paid for each event, in the order of [`Event::ALL`].
     pub reward: [f32; Event::ALL.len()],
     /// Where training trials start: regions of the world and the share of trials that start there (shares sum to 1).
     pub starts: Vec<(String, f32)>,
     /// Region in which tests start.
     pub tests: String,
+    /// Trials after which the skill is tested, ascending; it also is after its last one.
+    pub tested_at: Vec<u32>,
     /// Bits of the events (see [`Event::bit`]) that end a trial as achieved.
     pub ends: u32,
     /// Primitive steps after which a trial is cut, 1 to 255.
@@ -69,6 +135,68 @@ pub struct Skill {
     pub trials: u32,
     /// How the skill is learned.
     pub learning: Learning,
+}
+
+impl Skill {
+    /// Whether the children are skills.
+    pub fn is_high(&self) -> bool {
+        self.children.iter().any(|child| matches!(child, Child::Skill(_)))
+    }
+
+    /// Children that have an applicability threshold.
+    pub fn thresholds(&self) -> u32 {
+        self.applicable.iter().flatten().count() as u32
+    }
+
+    /// Inputs of each net in a world of so many rooms.
+    pub fn width(&self, rooms: usize) -> u32 {
+        self.inputs.iter().map(|input| input.width(self, rooms)).sum()
+    }
+}
+
+/// What a skill can choose: nothing else tells elementary from high-level skills.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Child {
+    /// A primitive action.
+    Action(Action),
+    /// The skill at this index of the arm's skills.
+    Skill(usize),
+}
+
+/// From which value of its best child on a skill is applicable (paper, section VI.B).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Threshold {
+    /// Set by hand, in units of Q (reward / `reward_scale`).
+    Fixed(f32),
+    /// Learned from the skill's own training trials: the value at which success has this probability.
+    Learned(f32),
+}
+
+/// How a skill's child is chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Choice {
+    /// By the learned Q-values.
+    Learned = 0,
+    /// Uniformly at random among those allowed. A baseline.
+    Random = 1,
+    /// The first allowed one, in the order of `children`: fixed arbitration. A baseline.
+    Ordered = 2,
+}
+
+/// The Persistence Rule (paper, section VI.B) and our additions to it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Persistence {
+    /// Whether it holds in training.
+    pub training: bool,
+    /// Whether it holds in tests too.
+    pub tests: bool,
+    /// Whether applicability limits the choice.
+    pub applicability: bool,
+    /// Whether a running child that stops being applicable may be left. Ours.
+    pub interrupt: bool,
+    /// Steps without any event after which the choice is open again, 0 for never. Ours.
+    pub decision_steps: u32,
 }
 
 /// One group of a net's inputs.
@@ -87,15 +215,44 @@ pub enum Input {
     Bumpers,
     /// Cosine and sine of the compass reading.
     Compass,
+    /// Cosine and sine of twice the compass reading.
+    Compass2,
+    /// [`Input::Sonar`] turned by the compass, so that the first value looks east, the next 15 degrees
+    /// counter-clockwise, interpolated between readings.
+    SonarCompass {
+        /// Decay in inches.
+        scale: f32,
+    },
+    /// 1 where any bearing is lit.
+    Lit,
+    /// The best Q-value of each child that has a threshold.
+    Values,
+    /// 1 for each child that has a threshold and is applicable.
+    Applicable,
+    /// 1 for the child that has been running.
+    Running,
+    /// Trace of having seen the light in this trial.
+    LightTrace,
+    /// Trace of having passed a door in this trial, and its product with the cosine and sine of the compass then.
+    DoorTrace,
+    /// Running means of the ranges east and west together, and north and south together.
+    RangeMeans,
+    /// 1 for the room the robot is in. Privileged: no sensor tells.
+    Room,
 }
 
 impl Input {
-    /// Number of net inputs that the group takes.
-    pub fn width(self) -> u32 {
+    /// Number of inputs that the group takes in a net of `skill`, in a world of so many rooms.
+    pub fn width(self, skill: &Skill, rooms: usize) -> u32 {
         match self {
-            Self::Sonar { .. } | Self::SonarFar | Self::Light => 24,
+            Self::Sonar { .. } | Self::SonarFar | Self::SonarCompass { .. } | Self::Light => 24,
             Self::Bumpers => 4,
-            Self::Compass => 2,
+            Self::Compass | Self::Compass2 | Self::RangeMeans => 2,
+            Self::Lit | Self::LightTrace => 1,
+            Self::DoorTrace => 3,
+            Self::Values | Self::Applicable => skill.thresholds(),
+            Self::Running => skill.children.len() as u32,
+            Self::Room => rooms as u32,
         }
     }
 }
@@ -164,13 +321,18 @@ pub enum Event {
     Docked = 0,
     /// A move was cut short by contact with anything.
     Collision = 1,
-    /// The centre reached another room than the trial's first and is clear of the doorway.
+    /// The centre reached another room than the one before and is clear of the doorway.
     PassedDoor = 2,
+    /// A forward move that was not blocked left the nearest sonar reading 30 to 150 degrees to the right between
+    /// `robot.beside_near` and `robot.beside_far`.
+    BesideRight = 3,
+    /// The same on the left.
+    BesideLeft = 4,
 }
 
 impl Event {
     /// All events, by code.
-    pub const ALL: [Self; 3] = [Self::Docked, Self::Collision, Self::PassedDoor];
+    pub const ALL: [Self; 5] = [Self::Docked, Self::Collision, Self::PassedDoor, Self::BesideRight, Self::BesideLeft];
 
     /// The name used in configs.
     pub fn name(self) -> &'static str {
@@ -178,6 +340,8 @@ impl Event {
             Self::Docked => "docked",
             Self::Collision => "collision",
             Self::PassedDoor => "passed-door",
+            Self::BesideRight => "beside-right",
+            Self::BesideLeft => "beside-left",
         }
     }
 
@@ -232,6 +396,28 @@ pub struct Learning {
     pub timeout_terminal: bool,
     /// An action that was just blocked is not available on the next step.
     pub mask_blocked: bool,
+    /// One net with an output per child, instead of a net per child.
+    pub shared_net: bool,
+    /// Which steps are learned from, and over which children the best next value is taken.
+    pub backup: Backup,
+    /// Targets are moved this many times as far from the greatest Q-value; 1 leaves them.
+    pub advantage_scale: f32,
+    /// Share of the steps between decisions that [`Backup::Decisions`] learns from too.
+    pub inner_share: f32,
+    /// Inverse temperature at which the children, and theirs, choose while this skill is being learned or tested.
+    pub child_inverse_temperature: f32,
+}
+
+/// How a skill over skills is learned from a recorded trial.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Backup {
+    /// From every primitive step, the best next value over all applicable children: the literal reading of the paper.
+    Steps = 0,
+    /// From every primitive step, the best next value over the children that persistence would allow.
+    Persistent = 1,
+    /// At decisions only, semi-Markov; lambda mixes there.
+    Decisions = 2,
 }
 
 /// Weight update rule.
@@ -285,7 +471,7 @@ pub struct Noise {
 /// When and how learners are tested.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Evaluate {
-    /// Trials of a skill after which it is tested, ascending; each arm also tests after its last trial.
+    /// Trials of a skill after which it is tested, unless it names its own; ascending.
     pub at: Vec<u32>,
     /// Greedy test trials each time, the same starts for a learner every time.
     pub episodes: u32,
