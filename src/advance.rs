@@ -4,19 +4,16 @@
 //! The learner is a state machine whose whole state is in its [`Cursor`](crate::learner::layout::Cursor), so
 //! it makes no difference how often it is interrupted. Twin: `shaders/advance.wgsl`.
 
-use crate::learner::layout::{Dispatch, RECORD_WORDS};
+use crate::learner::layout::Dispatch;
 use crate::learner::memory::{Learner, Scratch};
 use crate::learner::phase::{PHASE_ACT, PHASE_DONE, PHASE_REPLAY, PHASE_START, PHASE_TEACH};
-use crate::lesson::record::{CUT, ENDED, note, write_header, write_record, write_row};
+use crate::lesson::record::{CUT, ENDED, note, write_header, write_outcome, write_record, write_row};
 use crate::lesson::replay::{begin_replay, lesson_word, recent_lesson, replay_step, taught_lesson};
-use crate::math::rng::{Purpose, Stream, below, draw, noise, roll};
-use crate::qnet::forward::forward;
-use crate::robot::motion::{COLLISION, NO_ACTION, move_body};
-use crate::robot::noise::noise_of;
-use crate::skill::choose::{pick, sharpness, weigh};
-use crate::skill::encode::encode;
-use crate::skill::observe::{DICE_ACTUATOR, DICE_CHOICE, observe};
-use crate::skill::reward::{passed_door, reward_of, room_of};
+use crate::math::rng::{Purpose, Stream, below, draw, roll};
+use crate::skill::act::{descend, execute, place, sense, think, watch};
+use crate::skill::choose::{NO_CHILD, choose, sharpness};
+use crate::skill::observe::DICE_CHOICE;
+use crate::skill::persist::{commit, options};
 use crate::skill::start::{start_pose, start_region};
 
 /// Whether the learner is past the point at which this dispatch stops.
@@ -77,72 +74,61 @@ fn start(learner: &mut Learner<'_>, dispatch: &Dispatch) {
         let words = draw(stream, 0);
         let region = start_region(skill, words[0]) as usize;
         let pose = start_pose(&learner.shared.atlas, skill.start_offset[region], skill.start_count[region], words);
-        learner.cursor.x = pose.x;
-        learner.cursor.y = pose.y;
-        learner.cursor.heading = pose.heading;
-        learner.cursor.bumpers = 0;
-        learner.cursor.masked = NO_ACTION;
-        learner.cursor.origin = room_of(&learner.shared.floor.plan, pose.x, pose.y);
-        learner.cursor.step = 0;
-        learner.cursor.reward = 0.0;
-        learner.cursor.collisions = 0;
+        place(&mut learner.cursor.agent, learner.shared, pose);
         learner.cursor.phase = PHASE_ACT;
     }
 }
 
-/// Takes one step of the trial and records it.
+/// Looks, and closes the trial where it is over, or else takes one step of it and records it.
 #[inline(always)]
 fn act(learner: &mut Learner<'_>, scratch: &mut Scratch, base: u32, lessons_base: u32) {
-    let settings = &learner.settings[learner.cursor.skill as usize];
-    let skill = &learner.shared.skills[learner.cursor.skill as usize];
-    let terms = noise_of(settings);
-    let mut stream = Stream {
-        key: [settings.run_seed, settings.learner_seed],
-        skill: learner.cursor.skill,
-        trial: learner.cursor.trial,
-        step: learner.cursor.step,
-        purpose: Purpose::Step as u32,
-    };
+    let root = learner.cursor.skill;
+    let settings = &learner.settings[root as usize];
+    let skill = &learner.shared.skills[root as usize];
+    let words = skill.record_words;
     let slot = learner.cursor.remembered % settings.memory;
     let lesson = lessons_base + skill.memory_offset + slot * skill.lesson_stride;
+    let step = learner.cursor.agent.step;
+    let stream = Stream {
+        key: [settings.run_seed, settings.learner_seed],
+        skill: root,
+        trial: learner.cursor.trial,
+        step,
+        purpose: Purpose::Step as u32,
+    };
     let dice = roll(stream);
-    let (x, y, heading, touch) = (learner.cursor.x, learner.cursor.y, learner.cursor.heading, learner.cursor.bumpers);
-    observe(learner.shared, scratch, &dice, x, y, heading, touch, terms);
-    encode(learner.shared, scratch, skill);
-    forward(learner.nets, scratch, skill, base);
-    let outlook = weigh(scratch, skill.children, learner.cursor.masked, sharpness(settings, learner.cursor.trial));
-    let child = pick(scratch, outlook, dice.x[DICE_CHOICE]);
-    let slip = terms.actuator * noise(terms.kind, dice.x[DICE_ACTUATOR], dice.y[DICE_ACTUATOR]) + 1.0;
-    let moved = move_body(&learner.shared.floor, x, y, heading, skill.action[child as usize], slip);
-    let events = moved.events | passed_door(&learner.shared.floor.plan, learner.cursor.origin, moved.x, moved.y);
-    let reward = reward_of(settings, events);
-    note(&mut scratch.record, child, learner.cursor.masked, events, reward);
-    write_record(learner.lessons, &scratch.record, lesson, learner.cursor.step);
-    let hit = (events & COLLISION) == COLLISION;
-    learner.cursor.x = moved.x;
-    learner.cursor.y = moved.y;
-    learner.cursor.heading = moved.heading;
-    learner.cursor.bumpers = moved.bumpers;
-    learner.cursor.masked = if hit && settings.mask_blocked == 1 { child } else { NO_ACTION };
-    learner.cursor.step += 1;
-    learner.cursor.actions += 1;
-    learner.cursor.reward += reward;
-    learner.cursor.collisions += u32::from(hit);
-    let achieved = (events & skill.ends) != 0;
-    if achieved || learner.cursor.step >= settings.max_steps {
+    sense(&mut learner.cursor.agent, learner.shared, scratch, settings, &dice);
+    if step > 0 {
+        let (events, earned) = (learner.cursor.agent.events, learner.cursor.agent.earned);
+        write_outcome(learner.lessons, words, lesson, step - 1, events, earned);
+    }
+    let achieved = (learner.cursor.agent.events & skill.ends) != 0;
+    watch(&learner.cursor.agent, learner.shared, scratch, learner.settings, learner.nets, base, root);
+    think(&learner.cursor.agent, learner.shared, scratch, learner.settings, learner.nets, base, root);
+    let persist = settings.persist_training == 1;
+    let found = options(&learner.cursor.agent, scratch, &learner.shared.skills, settings, root, persist);
+    if achieved || step >= settings.max_steps {
         let end = if achieved { ENDED } else { CUT };
-        stream.step = learner.cursor.step;
-        let last = roll(stream);
-        observe(learner.shared, scratch, &last, moved.x, moved.y, moved.heading, moved.bumpers, terms);
-        note(&mut scratch.record, NO_ACTION, learner.cursor.masked, 0, 0.0);
-        write_record(learner.lessons, &scratch.record, lesson, learner.cursor.step);
-        let (steps, earned, hits) = (learner.cursor.step, learner.cursor.reward, learner.cursor.collisions);
-        write_header(learner.lessons, lesson, steps, end, earned, hits);
+        note(&mut scratch.record, NO_CHILD, found);
+        write_record(learner.lessons, &scratch.record, words, lesson, step);
+        let (earned, hits) = (learner.cursor.agent.reward, learner.cursor.agent.collisions);
+        write_header(learner.lessons, lesson, step, end, earned, hits);
         let trial = learner.cursor.trial;
-        write_row(learner.rows, learner.cursor, trial, steps, earned, end, hits, 0);
+        write_row(learner.rows, learner.cursor, trial, step, earned, end, hits, 0);
         learner.cursor.remembered += 1;
         learner.cursor.replay = 0;
         learner.cursor.phase = PHASE_REPLAY;
+    } else {
+        let heat = sharpness(settings, learner.cursor.trial);
+        let child = choose(scratch, settings, skill.children, found.allowed, heat, false, dice.x[DICE_CHOICE]);
+        note(&mut scratch.record, child, found);
+        write_record(learner.lessons, &scratch.record, words, lesson, step);
+        let agent = &mut learner.cursor.agent;
+        commit(agent, root, child, found);
+        let action =
+            descend(agent, learner.shared, scratch, learner.settings, learner.nets, base, root, child, &dice);
+        execute(agent, learner.shared, settings, action, &dice);
+        learner.cursor.actions += 1;
     }
 }
 
@@ -181,7 +167,6 @@ fn replay(learner: &mut Learner<'_>, scratch: &mut Scratch, base: u32) {
 /// Moves one learner on by at most `dispatch.quanta`. Its slices of the buffers begin at word 0.
 #[inline(always)]
 pub fn advance(learner: &mut Learner<'_>, dispatch: &Dispatch) {
-    const { assert!(RECORD_WORDS >= 10, "word 9 of a record holds the reward") };
     let mut scratch = Scratch::default();
     let base = 0;
     let lessons_base = 0;

@@ -1,12 +1,16 @@
 //! From a plan to the memory of a cohort: every derived size is computed here, once.
 
 use super::layout::{
-    Cursor, EVENTS, LANES, LESSON_HEADER, MAX_CHILDREN, MAX_GROUPS, MAX_INPUTS, MAX_STARTS, RECORD_WORDS, ROW_WORDS,
-    SONAR_CODES, Settings, SkillPlan,
+    BASE_WORDS, Cursor, EVENTS, LANES, LESSON_HEADER, MAX_CHILDREN, MAX_GROUPS, MAX_INPUTS, MAX_SKILLS, MAX_STARTS,
+    RECORD_WORDS, ROW_WORDS, SKILL_CODE, SONAR_CODES, Settings, SkillPlan,
 };
-use crate::config::plan::{Arm, Input, Noise, NoiseKind, Optimiser, Skill};
+use crate::config::plan::{Arm, Child, Input, NoiseKind, Optimiser, Skill, Threshold};
 use crate::qnet::init::init;
-use crate::skill::encode::{GROUP_BUMPERS, GROUP_COMPASS, GROUP_LIGHT, GROUP_SONAR};
+use crate::skill::encode::{
+    GROUP_APPLICABLE, GROUP_BUMPERS, GROUP_COMPASS, GROUP_COMPASS2, GROUP_DOOR_TRACE, GROUP_LIGHT, GROUP_LIGHT_TRACE,
+    GROUP_LIT, GROUP_RANGE_MEANS, GROUP_ROOM, GROUP_RUNNING, GROUP_SONAR, GROUP_SONAR_COMPASS, GROUP_VALUES,
+};
+use crate::skill::persist::ALWAYS;
 use crate::world::World;
 use crate::world::atlas::Atlas;
 use bytemuck::Zeroable;
@@ -50,12 +54,24 @@ impl Shape {
             let siblings = || arms.iter().map(|arm| &arm.skills[number]);
             let most = |size: fn(&Skill) -> u32| siblings().map(size).max().unwrap_or(0);
             let mut plan = plan_of(skill, world, &mut shape.atlas)?;
-            plan.nets_offset = shape.nets_stride as u32;
-            plan.clock_offset = plan.nets_offset + plan.children * 3 * plan.rows * LANES as u32;
-            plan.lesson_stride = lesson_stride(most(|skill| skill.max_steps));
+            plan.watched = watched(&arms[0].skills, number);
+            plan.lesson_stride = lesson_stride(most(|skill| skill.max_steps), plan.record_words);
             plan.memory_offset = shape.lessons_stride as u32;
-            shape.nets_stride = plan.clock_offset as usize + LANES;
-            shape.lessons_stride += most(|skill| skill.learning.memory) as usize * plan.lesson_stride as usize;
+            match skill.mirror {
+                Some(source) => {
+                    plan.nets_offset = shape.skills[source].nets_offset;
+                    plan.clock_offset = shape.skills[source].clock_offset;
+                }
+                None => {
+                    plan.nets_offset = shape.nets_stride as u32;
+                    plan.clock_offset = plan.nets_offset + plan.nets * 3 * plan.rows * LANES as u32;
+                    shape.nets_stride = plan.clock_offset as usize + LANES;
+                }
+            }
+            // What is never tried is never remembered.
+            if most(|skill| skill.trials) > 0 {
+                shape.lessons_stride += most(|skill| skill.learning.memory) as usize * plan.lesson_stride as usize;
+            }
             shape.rows_stride += most(|skill| skill.trials + skill.lessons) as usize * ROW_WORDS;
             shape.skills.push(plan);
         }
@@ -74,23 +90,40 @@ impl Shape {
     /// A learner's settings for each skill, its cursor before the first quantum, and its initial nets.
     pub fn learner(&self, arm: &Arm, run_seed: u32, seed: u32) -> (Vec<Settings>, Cursor, Vec<f32>) {
         let mut nets = vec![0.0; self.nets_stride];
-        let settings: Vec<Settings> =
-            arm.skills.iter().map(|skill| settings_of(skill, &arm.noise, run_seed, seed)).collect();
-        for (number, plan) in self.skills.iter().enumerate() {
+        let settings: Vec<Settings> = arm.skills.iter().map(|skill| settings_of(skill, arm, run_seed, seed)).collect();
+        for (number, plan) in self.skills.iter().enumerate().filter(|(number, _)| arm.skills[*number].mirror.is_none()) {
             init(&mut nets, plan, number as u32, &settings[number]);
         }
         (settings, Cursor::zeroed(), nets)
     }
 }
 
-/// Words of a lesson of at most `max_steps` steps.
-pub fn lesson_stride(max_steps: u32) -> u32 {
-    LESSON_HEADER as u32 + (max_steps + 1) * RECORD_WORDS as u32
+/// Words of a lesson of at most `max_steps` steps of `record_words` each.
+pub fn lesson_stride(max_steps: u32, record_words: u32) -> u32 {
+    LESSON_HEADER as u32 + (max_steps + 1) * record_words
+}
+
+/// Bits of the skills below `root`, at any depth, on whose values some threshold in its tree depends.
+fn watched(skills: &[Skill], root: usize) -> u32 {
+    let mut below = 1_u32 << root;
+    let mut watched = 0;
+    for (n, skill) in skills.iter().enumerate().rev().filter(|(n, _)| *n <= root && *n < MAX_SKILLS) {
+        if (below >> n) & 1 == 0 {
+            continue;
+        }
+        for (child, threshold) in skill.children.iter().zip(&skill.applicable) {
+            let Child::Skill(child) = child else { continue };
+            below |= 1 << child;
+            watched |= u32::from(threshold.is_some()) << child;
+        }
+    }
+    watched
 }
 
 fn plan_of(skill: &Skill, world: &World, atlas: &mut Atlas) -> Result<SkillPlan, ShapeError> {
     let refuse = |message: String, hint: &str| ShapeError { skill: skill.name.clone(), message, hint: hint.to_owned() };
-    let inputs: u32 = skill.inputs.iter().map(|input| input.width()).sum();
+    let rooms = world.rooms.len();
+    let inputs = skill.width(rooms);
     if inputs as usize > MAX_INPUTS || skill.inputs.len() > MAX_GROUPS {
         let message = format!("{inputs} inputs in {} groups; {MAX_INPUTS} in {MAX_GROUPS} fit", skill.inputs.len());
         return Err(refuse(message, "name fewer inputs"));
@@ -101,27 +134,45 @@ fn plan_of(skill: &Skill, world: &World, atlas: &mut Atlas) -> Result<SkillPlan,
     }
     let mut plan = SkillPlan::zeroed();
     plan.inputs = inputs;
-    plan.rows = inputs + 3;
     plan.children = skill.children.len() as u32;
+    (plan.nets, plan.outputs) = if skill.learning.shared_net { (1, plan.children) } else { (plan.children, 1) };
+    plan.rows = inputs + plan.outputs + 2;
+    plan.record_words = if skill.is_high() { RECORD_WORDS } else { BASE_WORDS } as u32;
+    plan.mirrored = u32::from(skill.mirror.is_some());
     plan.groups = skill.inputs.len() as u32;
     plan.starts = skill.starts.len() as u32;
     plan.ends = skill.ends;
     let mut first = 0;
     for (group, input) in skill.inputs.iter().enumerate() {
         plan.group_first[group] = first;
-        first += input.width();
+        plan.group_width[group] = input.width(skill, rooms);
+        first += plan.group_width[group];
         plan.group_kind[group] = match input {
             Input::Sonar { .. } | Input::SonarFar => GROUP_SONAR,
+            Input::SonarCompass { .. } => GROUP_SONAR_COMPASS,
             Input::Light => GROUP_LIGHT,
             Input::Bumpers => GROUP_BUMPERS,
             Input::Compass => GROUP_COMPASS,
+            Input::Compass2 => GROUP_COMPASS2,
+            Input::Lit => GROUP_LIT,
+            Input::Values => GROUP_VALUES,
+            Input::Applicable => GROUP_APPLICABLE,
+            Input::Running => GROUP_RUNNING,
+            Input::LightTrace => GROUP_LIGHT_TRACE,
+            Input::DoorTrace => GROUP_DOOR_TRACE,
+            Input::RangeMeans => GROUP_RANGE_MEANS,
+            Input::Room => GROUP_ROOM,
         };
-        if plan.group_kind[group] == GROUP_SONAR {
+        if plan.group_kind[group] == GROUP_SONAR || plan.group_kind[group] == GROUP_SONAR_COMPASS {
             plan.group_table[group] = atlas.add_table(&sonar_table(*input));
         }
     }
-    for (child, action) in skill.children.iter().enumerate() {
-        plan.action[child] = *action as u32;
+    for (number, (child, threshold)) in skill.children.iter().zip(&skill.applicable).enumerate() {
+        plan.child[number] = match child {
+            Child::Action(action) => *action as u32,
+            Child::Skill(below) => (SKILL_CODE + below) as u32,
+        };
+        plan.thresholded |= u32::from(threshold.is_some()) << number;
     }
     let mut cells_of = |region: &str| {
         let cells = world.region_cells(region).unwrap_or_default();
@@ -146,15 +197,23 @@ fn sonar_table(input: Input) -> [f32; SONAR_CODES] {
     std::array::from_fn(|reading| {
         let d = reading as f64;
         let code = match input {
-            Input::Sonar { scale } => 2.0 * (-(d - 12.0) / f64::from(scale)).exp() - 1.0,
+            Input::Sonar { scale } | Input::SonarCompass { scale } => 2.0 * (-(d - 12.0) / f64::from(scale)).exp() - 1.0,
             _ => 2.0 * d / 127.0 - 1.0,
         };
         code as f32
     })
 }
 
-fn settings_of(skill: &Skill, noise: &Noise, run_seed: u32, seed: u32) -> Settings {
-    let learning = &skill.learning;
+fn settings_of(skill: &Skill, arm: &Arm, run_seed: u32, seed: u32) -> Settings {
+    let (learning, noise, robot) = (&skill.learning, &arm.noise, &arm.robot);
+    let persistence = &skill.persistence;
+    let mut threshold = [ALWAYS; MAX_CHILDREN];
+    for (value, own) in threshold.iter_mut().zip(&skill.applicable) {
+        // A learned one is always exceeded until it is known.
+        if let Some(Threshold::Fixed(fixed)) = own {
+            *value = *fixed;
+        }
+    }
     let (optimiser, rate, beta1, beta2, epsilon) = match learning.optimiser {
         Optimiser::Sgd { rate, momentum } => (0, rate, momentum, 0.0, 1.0),
         Optimiser::Adam { rate, beta1, beta2, epsilon } => (1, rate, beta1, beta2, epsilon),
@@ -202,6 +261,22 @@ fn settings_of(skill: &Skill, noise: &Noise, run_seed: u32, seed: u32) -> Settin
         lessons: skill.lessons,
         trials: skill.trials,
         max_steps: skill.max_steps,
+        choice: skill.choice as u32,
+        persist_training: u32::from(persistence.training),
+        persist_tests: u32::from(persistence.tests),
+        applicability: u32::from(persistence.applicability),
+        interrupt: u32::from(persistence.interrupt),
+        decision_steps: persistence.decision_steps,
+        child_sharpness: learning.child_inverse_temperature,
+        backup: learning.backup as u32,
+        advantage_scale: learning.advantage_scale,
+        inner_share: learning.inner_share,
+        light_trace: robot.light_trace,
+        door_trace: robot.door_trace,
+        range_mean: robot.range_mean,
+        beside_near: robot.beside_near as u32,
+        beside_far: robot.beside_far as u32,
+        threshold,
         reward,
     }
 }

@@ -32,8 +32,10 @@ macro_rules! shared {
     };
     (@rust u32) => { u32 };
     (@rust f32) => { f32 };
+    (@rust $nested:ident) => { $nested };
     (@rust [$element:ident; $n:ident]) => { [$element; $n] };
     (@wgsl u32) => { "u32" };
     (@wgsl f32) => { "f32" };
+    (@wgsl $nested:ident) => { stringify!($nested) };
     (@wgsl [$element:ident; $n:ident]) => { concat!("array<", stringify!($element), ", ", stringify!($n), ">") };
 }

@@ -15,7 +15,7 @@ constants! {
     /// Most inputs of a net.
     MAX_INPUTS = 64;
     /// Most input groups of a skill.
-    MAX_GROUPS = 8;
+    MAX_GROUPS = 12;
     /// Most segments of a world.
     MAX_SEGMENTS = 256;
     /// Most rooms of a world.
@@ -26,12 +26,24 @@ constants! {
     MAX_STARTS = 4;
     /// Most skills of a learner.
     MAX_SKILLS = 8;
-    /// Words of one recorded step.
-    RECORD_WORDS = 10;
+    /// Most skills between the root of a tree and an action, the root counted.
+    MAX_DEPTH = 6;
+    /// Code of a skill's first skill as a child; lower codes are actions.
+    SKILL_CODE = 16;
+    /// Words of one recorded step of a skill over actions.
+    BASE_WORDS = 10;
+    /// Words of one recorded step of a skill over skills.
+    RECORD_WORDS = 25;
+    /// Word of a record at which the memories stand.
+    MEMORY_WORD = 11;
+    /// Memories.
+    MEMORIES = 6;
+    /// Word of a record at which the children's values stand.
+    VALUE_WORD = 17;
     /// Words that open a lesson: its steps, how it ended, its reward, its collisions.
     LESSON_HEADER = 4;
     /// Kinds of events that a reward can name.
-    EVENTS = 3;
+    EVENTS = 5;
     /// Words of one row of the trial table.
     ROW_WORDS = 8;
     /// Entries of a sonar coding table.
@@ -123,16 +135,22 @@ shared! {
     struct SkillPlan {
         /// Inputs of each net.
         inputs: u32,
-        /// Rows of 32 weights of each net: one per input, hidden biases, output weights, output bias.
+        /// Rows of 32 weights of each net: one per input, hidden biases, weights of each output, output biases.
         rows: u32,
-        /// Nets: one per child.
+        /// Children, and Q-values.
         children: u32,
+        /// Nets: one per child, or one for all.
+        nets: u32,
+        /// Outputs of each net: one, or one per child.
+        outputs: u32,
         /// Input groups in use.
         groups: u32,
         /// Word of a learner's nets at which the skill's first net stands.
         nets_offset: u32,
         /// Word of a learner's nets at which the optimiser's clocks stand.
         clock_offset: u32,
+        /// Words of one recorded step.
+        record_words: u32,
         /// Words of one lesson slot.
         lesson_stride: u32,
         /// Word of a learner's lessons at which the skill's memory stands.
@@ -149,14 +167,24 @@ shared! {
         tests_count: u32,
         /// Events that end a trial as achieved.
         ends: u32,
-        /// Kind of each input group: 0 table of the sonar reading, 1 light, 2 bumpers, 3 compass.
+        /// Bits of the skills below this one, of any depth, that somebody's applicability depends on.
+        watched: u32,
+        /// Bits of the children that have an applicability threshold.
+        thresholded: u32,
+        /// 1 where the nets belong to another skill and see the world in a mirror.
+        mirrored: u32,
+        /// Word of the atlas at which the planner's table stands that decides instead of the nets, or 0.
+        planned: u32,
+        /// Kind of each input group: one of the `GROUP` codes of `skill/encode`.
         group_kind: [u32; MAX_GROUPS],
         /// First input of each group.
         group_first: [u32; MAX_GROUPS],
+        /// Inputs of each group.
+        group_width: [u32; MAX_GROUPS],
         /// Word of the atlas at which a sonar group's table stands.
         group_table: [u32; MAX_GROUPS],
-        /// Action code of each child.
-        action: [u32; MAX_CHILDREN],
+        /// Code of each child: an action, or `SKILL_CODE` and the skill's number.
+        child: [u32; MAX_CHILDREN],
         /// Share of the trials that start in this region or an earlier one.
         start_share: [f32; MAX_STARTS],
         /// Word of the atlas at which the region's cells stand.
@@ -239,8 +267,89 @@ shared! {
         trials: u32,
         /// Step limit of a trial.
         max_steps: u32,
+        /// 0 by the learned values, 1 at random, 2 the first allowed.
+        choice: u32,
+        /// 1 where the chosen child is kept in training.
+        persist_training: u32,
+        /// 1 where it is kept in tests.
+        persist_tests: u32,
+        /// 1 where only applicable children are chosen.
+        applicability: u32,
+        /// 1 where a running child that is no longer applicable may be left.
+        interrupt: u32,
+        /// Steps after which the choice is open again, 0 for never.
+        decision_steps: u32,
+        /// Inverse temperature of the skills below this one.
+        child_sharpness: f32,
+        /// What is learned from: 0 all steps, 1 all steps as persistence allows, 2 decisions.
+        backup: u32,
+        /// Factor on the distance of targets from the greatest value.
+        advantage_scale: f32,
+        /// Share of the steps between decisions that are learned from too.
+        inner_share: f32,
+        /// What each step leaves of the trace of light.
+        light_trace: f32,
+        /// What each step leaves of the trace of a door.
+        door_trace: f32,
+        /// Weight of the past in the means of ranges.
+        range_mean: f32,
+        /// Least reading beside a wall, inches.
+        beside_near: u32,
+        /// Greatest reading beside a wall, inches.
+        beside_far: u32,
+        /// Value above which each child is applicable; `ALWAYS` where it always is.
+        threshold: [f32; MAX_CHILDREN],
         /// Amount paid for each event.
         reward: [f32; EVENTS],
+    }
+
+    /// A robot in a trial: its body, what it remembers, and what it is doing.
+    struct Agent {
+        /// Inches.
+        x: f32,
+        /// Inches.
+        y: f32,
+        /// Degrees.
+        heading: f32,
+        /// Touching bumpers.
+        bumpers: u32,
+        /// Steps of the trial taken.
+        step: u32,
+        /// Room that it was in when the trial began or a door was last passed.
+        origin: u32,
+        /// Action not available on the next step, or `NO_ACTION`.
+        blocked: u32,
+        /// 1 where the skill that acts does not repeat what was blocked.
+        masks: u32,
+        /// Last action, or `NO_ACTION`.
+        action: u32,
+        /// Events of the last action.
+        events: u32,
+        /// Reward of the last action.
+        earned: f32,
+        /// Reward of the trial so far.
+        reward: f32,
+        /// Discounted reward of the trial so far.
+        returned: f32,
+        /// Discount of the next reward.
+        discount: f32,
+        /// Collisions of the trial so far.
+        collisions: u32,
+        /// Running mean of the ranges east and west, -1 to 1.
+        east_west: f32,
+        /// Running mean of the ranges north and south, -1 to 1.
+        north_south: f32,
+        /// Trace of having seen the light.
+        light: f32,
+        /// Trace of having passed a door.
+        door: f32,
+        /// The same times the cosine of the compass at the door.
+        door_cosine: f32,
+        /// The same times its sine.
+        door_sine: f32,
+        /// Of each skill: the child that runs (`NO_CHILD` where none does), from bit 8 the steps since it was
+        /// chosen, from bit 16 the children that were applicable.
+        run: [u32; MAX_SKILLS],
     }
 
     /// Where a learner stands: all that changes from one quantum to the next, but nets and lessons.
@@ -251,26 +360,8 @@ shared! {
         skill: u32,
         /// Trials of it finished.
         trial: u32,
-        /// Steps of the trial taken.
-        step: u32,
-        /// Inches.
-        x: f32,
-        /// Inches.
-        y: f32,
-        /// Degrees.
-        heading: f32,
-        /// Touching bumpers.
-        bumpers: u32,
-        /// Child masked on the next step, or `NO_ACTION`.
-        masked: u32,
-        /// Room in which the trial began.
-        origin: u32,
         /// Primitive actions executed so far, taught ones included.
         actions: u32,
-        /// Reward of the trial so far.
-        reward: f32,
-        /// Collisions of the trial so far.
-        collisions: u32,
         /// Lessons remembered so far, forgotten ones included.
         remembered: u32,
         /// Replays of this phase begun so far.
@@ -291,34 +382,20 @@ shared! {
         updates: u32,
         /// 1 where the observation that ends the lesson in replay is still to be valued.
         replay_open: u32,
+        /// The robot in its trial.
+        agent: Agent,
     }
 
     /// A test trial.
     struct Episode {
-        /// Inches.
-        x: f32,
-        /// Inches.
-        y: f32,
-        /// Degrees.
-        heading: f32,
-        /// Touching bumpers.
-        bumpers: u32,
-        /// Steps taken.
-        step: u32,
-        /// Child masked on the next step, or `NO_ACTION`.
-        masked: u32,
-        /// Room in which the trial began.
-        origin: u32,
         /// 0 not begun, 1 running, 2 achieved, 3 cut.
         state: u32,
-        /// Reward so far.
-        reward: f32,
-        /// Collisions so far.
-        collisions: u32,
         /// Where it began, inches.
         start_x: f32,
         /// Where it began, inches.
         start_y: f32,
+        /// The robot.
+        agent: Agent,
     }
 
     /// A robot under given actions.
@@ -352,7 +429,7 @@ shared! {
         /// Degrees, compass.
         noise_compass: f32,
         /// What it senses after the action: the first words of a record.
-        record: [u32; RECORD_WORDS],
+        record: [u32; BASE_WORDS],
     }
 
     /// What the host tells one dispatch.

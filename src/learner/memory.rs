@@ -1,7 +1,7 @@
 //! What the CPU twins work on: one learner's slices of the cohort's buffers, and the scratch memory that
 //! a workgroup has.
 
-use super::layout::{Cursor, LANES, MAX_CHILDREN, MAX_INPUTS, RECORD_WORDS, Settings, SkillPlan};
+use super::layout::{Cursor, LANES, MAX_CHILDREN, MAX_INPUTS, MAX_SKILLS, RECORD_WORDS, Settings, SkillPlan};
 use crate::math::lanes::Lanes;
 use crate::robot::floor::Floor;
 
@@ -48,6 +48,10 @@ pub struct Scratch {
     pub q: [f32; MAX_CHILDREN],
     /// Boltzmann weight of every child, 0 where it is not available.
     pub odds: [f32; MAX_CHILDREN],
+    /// Greatest Q-value of each watched skill.
+    pub value: [f32; MAX_SKILLS],
+    /// All Q-values of each watched skill.
+    pub kept: [f32; MAX_SKILLS * MAX_CHILDREN],
 }
 
 impl Default for Scratch {
@@ -58,6 +62,8 @@ impl Default for Scratch {
             hidden: [[0.0; LANES]; MAX_CHILDREN],
             q: [0.0; MAX_CHILDREN],
             odds: [0.0; MAX_CHILDREN],
+            value: [0.0; MAX_SKILLS],
+            kept: [0.0; MAX_SKILLS * MAX_CHILDREN],
         }
     }
 }

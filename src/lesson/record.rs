@@ -1,26 +1,41 @@
 //! Writing lessons and rows of the trial table.
 //!
-//! Word 8 of a record: child, then from bit 8 the masked child, from bit 16 the events. Word 9: the reward.
+//! Word 8 of a record: child, from bit 8 the children that were allowed, from bit 16 those among which a free
+//! choice is made, from bit 24 the events, and bit 31 where the choice was free. Word 9: the reward. Events and
+//! reward are written one step later, by the look that settles them.
 
 use crate::learner::layout::{Cursor, LESSON_HEADER, RECORD_WORDS, ROW_WORDS};
+use crate::skill::persist::Options;
 
 /// The goal was achieved.
 pub const ENDED: u32 = 1;
 /// The step limit cut the trial.
 pub const CUT: u32 = 2;
+/// Bit of word 8 from which the events stand.
+pub const EVENTS_FROM: u32 = 24;
 
-/// Notes in word 8 and 9 of the record what was done and what it earned.
+/// Notes in words 8 and 9 of the record what was chosen, and among what.
 #[inline(always)]
-pub fn note(record: &mut [u32; RECORD_WORDS], child: u32, masked: u32, events: u32, reward: f32) {
-    record[8] = child | masked << 8 | events << 16;
-    record[9] = reward.to_bits();
+pub fn note(record: &mut [u32; RECORD_WORDS], child: u32, options: Options) {
+    record[8] = child | options.allowed << 8 | options.choices << 16 | options.decision << 31;
+    record[9] = 0;
 }
 
 /// Stores the record as step `step` of the lesson at word `lesson`.
 #[inline(always)]
-pub fn write_record(lessons: &mut [u32], record: &[u32; RECORD_WORDS], lesson: u32, step: u32) {
-    let at = lesson as usize + LESSON_HEADER + step as usize * RECORD_WORDS;
-    lessons[at..at + RECORD_WORDS].copy_from_slice(record);
+pub fn write_record(lessons: &mut [u32], record: &[u32; RECORD_WORDS], words: u32, lesson: u32, step: u32) {
+    let at = lesson as usize + LESSON_HEADER + (step * words) as usize;
+    for word in 0..words as usize {
+        lessons[at + word] = record[word];
+    }
+}
+
+/// Adds what step `step` of the lesson brought about.
+#[inline(always)]
+pub fn write_outcome(lessons: &mut [u32], words: u32, lesson: u32, step: u32, events: u32, earned: f32) {
+    let at = lesson as usize + LESSON_HEADER + (step * words) as usize;
+    lessons[at + 8] |= events << EVENTS_FROM;
+    lessons[at + 9] = earned.to_bits();
 }
 
 /// Completes a lesson.

@@ -3,8 +3,11 @@
 //! From the last step to the first: u_t = r_t + gamma [(1 - lambda) max_k Q(x_{t+1}, k) + lambda u_{t+1}], the
 //! bracket 0 at a goal. A step whose action the current policy would hardly take is not learned, and cuts
 //! the chain: there max Q stands for u. The form is recalled from Lin's other papers, so it is our choice.
+//!
+//! A skill over skills may learn at its decisions only: between them rewards are summed with their discount, and
+//! lambda mixes at decisions.
 
-use crate::learner::layout::{LESSON_HEADER, RECORD_WORDS};
+use crate::learner::layout::LESSON_HEADER;
 use crate::learner::memory::{Learner, Scratch};
 use crate::learner::phase::PHASE_FAILED;
 use crate::lesson::record::CUT;
@@ -14,6 +17,11 @@ use crate::qnet::backward::{backward, learning_rate};
 use crate::qnet::forward::forward;
 use crate::skill::choose::{sharpness, weigh};
 use crate::skill::encode::encode;
+
+/// Learning from every step, the best next value over all children of a free choice.
+pub const BACKUP_STEPS: u32 = 0;
+/// Learning at decisions.
+pub const BACKUP_DECISIONS: u32 = 2;
 
 /// Word of the bank at which the learner's taught lesson `number` stands: one lesson drawn from each of
 /// `lessons` equal strata of the bank.
@@ -74,10 +82,32 @@ pub fn begin_replay(learner: &mut Learner<'_>, lesson: u32, taught: u32) {
 /// Fetches step `step` of the lesson in replay into the record.
 #[inline(always)]
 pub fn load_record(learner: &Learner<'_>, scratch: &mut Scratch, step: u32) {
-    let offset = LESSON_HEADER as u32 + step * RECORD_WORDS as u32;
-    for word in 0..RECORD_WORDS {
-        scratch.record[word] = lesson_word(learner, offset + word as u32);
+    let words = learner.shared.skills[learner.cursor.skill as usize].record_words;
+    let offset = LESSON_HEADER as u32 + step * words;
+    for word in 0..words {
+        scratch.record[word as usize] = lesson_word(learner, offset + word);
     }
+}
+
+/// A target inside the range that a net can give.
+#[inline(always)]
+pub fn bounded(aim: f32, limit: f32) -> f32 {
+    let low = if aim > -limit { aim } else { -limit };
+    if low < limit { low } else { limit }
+}
+
+/// Whether a step between two decisions is learned from too.
+#[inline(always)]
+pub fn inner_drawn(learner: &Learner<'_>, step: u32) -> bool {
+    let settings = &learner.settings[learner.cursor.skill as usize];
+    let stream = Stream {
+        key: [settings.run_seed, settings.learner_seed],
+        skill: learner.cursor.skill,
+        trial: learner.cursor.trial,
+        step: learner.cursor.replay,
+        purpose: Purpose::Inner as u32,
+    };
+    unit(draw(stream, step)[0]) < settings.inner_share
 }
 
 /// Learns from the next step of the lesson in replay, last step first.
@@ -88,38 +118,47 @@ pub fn replay_step(learner: &mut Learner<'_>, scratch: &mut Scratch, base: u32) 
     let open = learner.cursor.replay_open == 1;
     let step = if open { learner.cursor.replay_left } else { learner.cursor.replay_left - 1 };
     load_record(learner, scratch, step);
-    encode(learner.shared, scratch, skill);
-    forward(learner.nets, scratch, skill, base);
     let child = scratch.record[8] & 0xff;
-    let masked = (scratch.record[8] >> 8) & 0xff;
-    let outlook = weigh(scratch, skill.children, masked, sharpness(settings, learner.cursor.trial));
-    if open {
-        learner.cursor.replay_open = 0;
-        learner.cursor.next_best = outlook.best;
-        learner.cursor.next_return = outlook.best;
-    } else {
-        let reward = f32::from_bits(scratch.record[9]) * settings.value_scale;
-        let future = (1.0 - settings.lambda) * learner.cursor.next_best + settings.lambda * learner.cursor.next_return;
-        let aim = reward + settings.gamma * future;
-        let low = if aim > -settings.target_limit { aim } else { -settings.target_limit };
-        let goal = if low < settings.target_limit { low } else { settings.target_limit };
-        let taught = settings.taught_always == 1 && learner.cursor.replay_taught == 1;
-        let policy = taught || scratch.odds[child as usize] > settings.policy_threshold * outlook.total;
-        let delta = goal - scratch.q[child as usize];
-        // Of all children: one that is never chosen again would not be found out otherwise.
-        let mut sound = is_number(delta);
-        for other in 0..skill.children as usize {
-            sound = sound && is_number(scratch.q[other]);
-        }
-        if !sound {
-            learner.cursor.phase = PHASE_FAILED;
-        } else if policy {
-            let pace = learning_rate(settings, learner.cursor.trial);
-            backward(learner.nets, scratch, skill, settings, base, child, delta, pace);
-            learner.cursor.updates += 1;
-        }
-        learner.cursor.next_best = outlook.best;
-        learner.cursor.next_return = if policy { goal } else { outlook.best };
+    let choices = (scratch.record[8] >> 16) & 0xff;
+    let allowed = if settings.backup == BACKUP_STEPS { choices } else { (scratch.record[8] >> 8) & 0xff };
+    let reward = f32::from_bits(scratch.record[9]) * settings.value_scale;
+    let future = (1.0 - settings.lambda) * learner.cursor.next_best + settings.lambda * learner.cursor.next_return;
+    let aim = bounded(reward + settings.gamma * future, settings.target_limit);
+    let inner = settings.backup == BACKUP_DECISIONS && (scratch.record[8] >> 31) == 0 && !open;
+    if inner && !inner_drawn(learner, step) {
+        learner.cursor.next_best = aim;
+        learner.cursor.next_return = aim;
         learner.cursor.replay_left = step;
+    } else {
+        encode(learner.shared, scratch, skill);
+        forward(learner.nets, scratch, skill, base);
+        let outlook = weigh(scratch, skill.children, allowed, sharpness(settings, learner.cursor.trial));
+        if open {
+            learner.cursor.replay_open = 0;
+            learner.cursor.next_best = outlook.best;
+            learner.cursor.next_return = outlook.best;
+        } else {
+            let taught = settings.taught_always == 1 && learner.cursor.replay_taught == 1;
+            let policy = taught || scratch.odds[child as usize] > settings.policy_threshold * outlook.total;
+            let stretched = outlook.best + settings.advantage_scale * (aim - outlook.best);
+            let plain = settings.advantage_scale == 1.0;
+            let goal = if plain { aim } else { bounded(stretched, settings.target_limit) };
+            let delta = goal - scratch.q[child as usize];
+            // Of all children: one that is never chosen again would not be found out otherwise.
+            let mut sound = is_number(delta);
+            for other in 0..skill.children as usize {
+                sound = sound && is_number(scratch.q[other]);
+            }
+            if !sound {
+                learner.cursor.phase = PHASE_FAILED;
+            } else if policy {
+                let pace = learning_rate(settings, learner.cursor.trial);
+                backward(learner.nets, scratch, skill, settings, base, child, delta, pace);
+                learner.cursor.updates += 1;
+            }
+            learner.cursor.next_best = if inner { aim } else { outlook.best };
+            learner.cursor.next_return = if policy || inner { aim } else { outlook.best };
+            learner.cursor.replay_left = step;
+        }
     }
 }

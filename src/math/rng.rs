@@ -31,6 +31,8 @@ pub enum Purpose {
     TeacherStart = 10,
     /// Resampling in statistics; never used by a kernel.
     Statistics = 11,
+    /// Which steps between decisions are learned from.
+    Inner = 12,
 }
 
 /// Name and code of every purpose that a shader names.
@@ -43,6 +45,7 @@ pub const PURPOSES: &[(&str, Purpose)] = &[
     ("PURPOSE_INIT", Purpose::Init),
     ("PURPOSE_LESSON", Purpose::Lesson),
     ("PURPOSE_GIVEN", Purpose::Given),
+    ("PURPOSE_INNER", Purpose::Inner),
 ];
 
 /// The stream of one trial: everything in a counter but the draw.

@@ -20,21 +20,23 @@ pub struct Errors {
 
 /// Errors of a net whose output should rise by `delta`.
 #[inline(always)]
-pub fn errors(nets: &[f32], scratch: &Scratch, skill: &SkillPlan, net: u32, child: u32, delta: f32) -> Errors {
+pub fn errors(nets: &[f32], scratch: &Scratch, plan: &SkillPlan, net: u32, number: u32, child: u32, delta: f32) -> Errors {
     let value = scratch.q[child as usize];
     let output = delta * (1.0 - value * value);
     let mut hidden = [0.0; LANES];
     for lane in 0..LANES {
-        let activation = scratch.hidden[child as usize][lane];
-        let weight = nets[(net + (skill.inputs + 1) * LANES as u32) as usize + lane];
+        let activation = scratch.hidden[number as usize][lane];
+        let weight = nets[(net + (plan.inputs + 1 + child - number) * LANES as u32) as usize + lane];
         hidden[lane] = output * weight * (1.0 - activation * activation);
     }
     Errors { output, hidden }
 }
 
-/// Ascent direction of one row of weights.
+/// Ascent direction of one row of weights of net `number`, for its output `output`.
 #[inline(always)]
-pub fn gradient(scratch: &Scratch, count: u32, child: u32, row: u32, errors: &Errors) -> Lanes {
+pub fn gradient(scratch: &Scratch, plan: &SkillPlan, number: u32, output: u32, row: u32, errors: &Errors) -> Lanes {
+    let count = plan.inputs;
+    let last = count + 1 + plan.outputs;
     let mut slope = errors.hidden;
     if row < count {
         let x = scratch.inputs[row as usize];
@@ -42,14 +44,15 @@ pub fn gradient(scratch: &Scratch, count: u32, child: u32, row: u32, errors: &Er
             slope[lane] = errors.hidden[lane] * x;
         }
     }
-    if row == count + 1 {
+    if row > count && row < last {
+        let own = row == count + 1 + output;
         for lane in 0..LANES {
-            slope[lane] = errors.output * scratch.hidden[child as usize][lane];
+            slope[lane] = if own { errors.output * scratch.hidden[number as usize][lane] } else { 0.0 };
         }
     }
-    if row == count + 2 {
+    if row == last {
         for lane in 0..LANES {
-            slope[lane] = if lane == 0 { errors.output } else { 0.0 };
+            slope[lane] = if lane == output as usize { errors.output } else { 0.0 };
         }
     }
     slope
@@ -75,18 +78,19 @@ pub fn backward(
     delta: f32,
     pace: f32,
 ) {
-    let net = net_of(skill, base, child);
-    let count = skill.inputs;
+    let number = if skill.nets == 1 { 0 } else { child };
+    let output = child - number;
+    let net = net_of(skill, base, number);
     let rows = skill.rows;
     let slab = rows * LANES as u32;
     let beta1 = settings.beta1;
     let beta2 = settings.beta2;
     let epsilon2 = settings.epsilon2;
-    let found = errors(nets, scratch, skill, net, child, delta);
+    let found = errors(nets, scratch, skill, net, number, child, delta);
     if settings.optimiser == 1 {
         // Adam (Kingma and Ba, 2015) in its second form, with epsilon under the root: one reciprocal root
         // serves where a root and a division would.
-        let clock = (base + skill.clock_offset + child) as usize;
+        let clock = (base + skill.clock_offset + number) as usize;
         let first = flush(nets[clock] * beta1);
         let second = flush(nets[clock + CLOCK_SECOND as usize] * beta2);
         let rate = pace * square_root(1.0 - second) * reciprocal(1.0 - first);
@@ -100,7 +104,7 @@ pub fn backward(
         let means = means.as_chunks_mut::<LANES>().0;
         let squares = squares.as_chunks_mut::<LANES>().0;
         for row in 0..rows as usize {
-            let slope = gradient(scratch, count, child, row as u32, &found);
+            let slope = gradient(scratch, skill, number, output, row as u32, &found);
             for lane in 0..LANES {
                 let g = slope[lane];
                 let mean = flush(beta1 * means[row][lane] + rest1 * g);
@@ -115,7 +119,7 @@ pub fn backward(
         let weights = weights.as_chunks_mut::<LANES>().0;
         let velocities = velocities.as_chunks_mut::<LANES>().0;
         for row in 0..rows as usize {
-            let slope = gradient(scratch, count, child, row as u32, &found);
+            let slope = gradient(scratch, skill, number, output, row as u32, &found);
             for lane in 0..LANES {
                 let g = slope[lane];
                 let velocity = flush(beta1 * velocities[row][lane] + pace * g);

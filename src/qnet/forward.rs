@@ -5,10 +5,10 @@ use crate::learner::memory::Scratch;
 use crate::math::functions::squash;
 use crate::math::lanes::lanes_sums;
 
-/// Word at which a child's net stands; its three slabs follow one another.
+/// Word at which net number `net` stands; its three slabs follow one another.
 #[inline(always)]
-pub fn net_of(skill: &SkillPlan, base: u32, child: u32) -> u32 {
-    base + skill.nets_offset + child * 3 * skill.rows * LANES as u32
+pub fn net_of(skill: &SkillPlan, base: u32, net: u32) -> u32 {
+    base + skill.nets_offset + net * 3 * skill.rows * LANES as u32
 }
 
 /// Computes `hidden` and `q` of every child from `inputs`.
@@ -16,9 +16,10 @@ pub fn net_of(skill: &SkillPlan, base: u32, child: u32) -> u32 {
 pub fn forward(nets: &[f32], scratch: &mut Scratch, skill: &SkillPlan, base: u32) {
     let inputs = skill.inputs as usize;
     let mut partials = [[0.0; LANES]; MAX_CHILDREN];
-    for child in 0..skill.children as usize {
-        let net = net_of(skill, base, child as u32) as usize;
-        let weights = &nets[net..net + skill.rows as usize * LANES].as_chunks::<LANES>().0[..inputs + 3];
+    for number in 0..skill.nets as usize {
+        let net = net_of(skill, base, number as u32) as usize;
+        let outputs = skill.outputs as usize;
+        let weights = &nets[net..net + skill.rows as usize * LANES].as_chunks::<LANES>().0[..inputs + 2 + outputs];
         let mut sum = weights[inputs];
         for (row, x) in weights[..inputs].iter().zip(&scratch.inputs) {
             for lane in 0..LANES {
@@ -26,14 +27,19 @@ pub fn forward(nets: &[f32], scratch: &mut Scratch, skill: &SkillPlan, base: u32
             }
         }
         for lane in 0..LANES {
-            let activation = squash(sum[lane]);
-            scratch.hidden[child][lane] = activation;
-            partials[child][lane] = activation * weights[inputs + 1][lane];
+            scratch.hidden[number][lane] = squash(sum[lane]);
+        }
+        for output in 0..outputs {
+            for lane in 0..LANES {
+                partials[number + output][lane] = scratch.hidden[number][lane] * weights[inputs + 1 + output][lane];
+            }
         }
     }
     lanes_sums(&mut partials, skill.children);
     for child in 0..skill.children as usize {
-        let bias = nets[net_of(skill, base, child as u32) as usize + (inputs + 2) * LANES];
+        let net = if skill.nets == 1 { 0 } else { child };
+        let row = inputs + 1 + skill.outputs as usize;
+        let bias = nets[net_of(skill, base, net as u32) as usize + row * LANES + (child - net)];
         scratch.q[child] = squash(partials[child][0] + bias);
     }
 }

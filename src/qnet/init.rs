@@ -8,12 +8,12 @@ use crate::qnet::forward::net_of;
 /// Fills one skill's nets: weights of the units in use uniform in plus or minus `init`, everything else 0,
 /// the clocks 1. `skill_number` keeps the skills' random numbers apart.
 pub fn init(nets: &mut [f32], skill: &SkillPlan, skill_number: u32, settings: &Settings) {
-    for child in 0..skill.children {
+    for child in 0..skill.nets {
         let net = net_of(skill, 0, child) as usize;
         for row in 0..skill.rows {
             for lane in 0..LANES as u32 {
-                let output_bias = row == skill.inputs + 2;
-                if lane >= settings.hidden || (output_bias && lane > 0) {
+                let output_biases = row == skill.inputs + 1 + skill.outputs;
+                if lane >= settings.hidden || (output_biases && lane >= skill.outputs) {
                     continue;
                 }
                 let stream = Stream {

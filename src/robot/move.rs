@@ -8,8 +8,12 @@ use crate::math::functions::{sin_cos, wrap_degrees};
 pub const DOCKED: u32 = 1;
 /// Contact cut a move short, and it did not dock.
 pub const COLLISION: u32 = 2;
-/// The centre reached another room than the first and is clear of the doorway.
+/// The centre reached another room than the one before and is clear of the doorway.
 pub const PASSED_DOOR: u32 = 4;
+/// A forward move ended beside a wall on the right.
+pub const BESIDE_RIGHT: u32 = 8;
+/// A forward move ended beside a wall on the left.
+pub const BESIDE_LEFT: u32 = 16;
 /// Code of the forward move.
 pub const FORWARD: u32 = 4;
 /// Code of the backward move.

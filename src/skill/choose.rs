@@ -1,12 +1,21 @@
-//! Boltzmann exploration over the available children, and the greedy choice (paper, section V: "the robot
+//! Boltzmann exploration over the allowed children, and the greedy choice (paper, section V: "the robot
 //! chose actions randomly, but preferred to choose actions having high utilities").
+//!
+//! Sets of children are bits: bit c stands for child c.
 
 use crate::learner::layout::{MAX_CHILDREN, Settings};
 use crate::learner::memory::Scratch;
 use crate::math::functions::exponential;
 use crate::math::rng::unit;
 
-/// What the Q-values say about the available children.
+/// By the learned values.
+pub const CHOICE_LEARNED: u32 = 0;
+/// At random.
+pub const CHOICE_RANDOM: u32 = 1;
+/// Stands for no child.
+pub const NO_CHILD: u32 = 255;
+
+/// What the Q-values say about the allowed children.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Outlook {
     /// Greatest Q-value.
@@ -24,20 +33,19 @@ pub fn sharpness(settings: &Settings, trial: u32) -> f32 {
     settings.sharpness_slope * risen as f32 + settings.sharpness_start
 }
 
-/// Weighs the children: `odds` holds exponential(sharpness (Q - best)), 0 for the masked child.
+/// Weighs the children: `odds` holds exponential(sharpness (Q - best)), 0 for those not allowed.
 #[inline(always)]
-pub fn weigh(scratch: &mut Scratch, children: u32, masked: u32, sharpness: f32) -> Outlook {
+pub fn weigh(scratch: &mut Scratch, children: u32, allowed: u32, sharpness: f32) -> Outlook {
     let mut best = -2.0;
     let mut greedy = 0;
     for child in 0..children {
         let value = scratch.q[child as usize];
-        // A lone child is always available.
-        let better = value > best && (child != masked || children == 1);
+        let better = value > best && ((allowed >> child) & 1) == 1;
         best = if better { value } else { best };
         greedy = if better { child } else { greedy };
     }
     for child in 0..MAX_CHILDREN {
-        let available = (child as u32) < children && (child as u32 != masked || children == 1);
+        let available = (child as u32) < children && ((allowed >> child) & 1) == 1;
         let weight = exponential(sharpness * (scratch.q[child] - best));
         scratch.odds[child] = if available { weight } else { 0.0 };
     }
@@ -62,4 +70,25 @@ pub fn pick(scratch: &Scratch, outlook: Outlook, word: u32) -> u32 {
         open = open && !here;
     }
     chosen
+}
+
+/// Chooses among the allowed children by the skill's own rule. `greedy` takes the best learned value.
+#[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "the twin of a shader function, which has no methods")]
+pub fn choose(
+    scratch: &mut Scratch,
+    settings: &Settings,
+    children: u32,
+    allowed: u32,
+    sharpness: f32,
+    greedy: bool,
+    word: u32,
+) -> u32 {
+    let even = settings.choice != CHOICE_LEARNED;
+    let outlook = weigh(scratch, children, allowed, if even { 0.0 } else { sharpness });
+    let drawn = pick(scratch, outlook, word);
+    let first = allowed.trailing_zeros();
+    let learned = if greedy { outlook.greedy } else { drawn };
+    let other = if settings.choice == CHOICE_RANDOM { drawn } else { first };
+    if even { other } else { learned }
 }

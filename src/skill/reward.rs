@@ -1,10 +1,14 @@
 //! What an action earned: events and their amounts.
 
-use crate::learner::layout::{EVENTS, Settings, WorldPlan};
-use crate::robot::motion::PASSED_DOOR;
+use crate::learner::layout::{EVENTS, RAYS, RECORD_WORDS, Settings, WorldPlan};
+use crate::robot::motion::{BESIDE_LEFT, BESIDE_RIGHT, COLLISION, FORWARD, PASSED_DOOR};
 
 /// Stands for no room.
 pub const NOWHERE: u32 = 255;
+/// First ray of the sector on the left, 30 degrees from straight ahead. Our choice.
+pub const SIDE_FIRST: u32 = 2;
+/// Last ray of it, 150 degrees from straight ahead. Our choice: it bridges a doorway.
+pub const SIDE_LAST: u32 = 10;
 
 /// Room that holds the point, or [`NOWHERE`].
 #[inline(always)]
@@ -18,7 +22,7 @@ pub fn room_of(world: &WorldPlan, x: f32, y: f32) -> u32 {
     found
 }
 
-/// [`PASSED_DOOR`] where the robot is in another room than the trial's first and clear of every doorway.
+/// [`PASSED_DOOR`] where the robot is in another room than `origin` and clear of every doorway.
 #[inline(always)]
 pub fn passed_door(world: &WorldPlan, origin: u32, x: f32, y: f32) -> u32 {
     let room = room_of(world, x, y);
@@ -30,6 +34,25 @@ pub fn passed_door(world: &WorldPlan, origin: u32, x: f32, y: f32) -> u32 {
     }
     let passed = clear && room != NOWHERE && origin != NOWHERE && room != origin;
     if passed { PASSED_DOOR } else { 0 }
+}
+
+/// [`BESIDE_RIGHT`] and [`BESIDE_LEFT`] where a forward move ended with the nearest reading of that side between
+/// `near` and `far` inches.
+#[inline(always)]
+pub fn beside(record: &[u32; RECORD_WORDS], near: u32, far: u32, action: u32, events: u32) -> u32 {
+    let mut left = 255;
+    let mut right = 255;
+    for ray in SIDE_FIRST..=SIDE_LAST {
+        let reading = (record[(ray / 4) as usize] >> (8 * (ray % 4))) & 0xff;
+        let mirror = RAYS as u32 - ray;
+        let other = (record[(mirror / 4) as usize] >> (8 * (mirror % 4))) & 0xff;
+        left = if reading < left { reading } else { left };
+        right = if other < right { other } else { right };
+    }
+    let went = action == FORWARD && (events & COLLISION) == 0;
+    let on_left = if went && left >= near && left <= far { BESIDE_LEFT } else { 0 };
+    let on_right = if went && right >= near && right <= far { BESIDE_RIGHT } else { 0 };
+    on_left | on_right
 }
 
 /// Sum of the amounts of the events that happened.

@@ -2,16 +2,16 @@
 
 use super::planner::{Planner, origin_of};
 use crate::config::plan::Skill;
-use crate::learner::layout::{Settings, SkillPlan};
+use crate::learner::layout::{Agent, Settings, SkillPlan};
 use crate::learner::memory::{Scratch, Shared};
-use crate::lesson::record::{CUT, ENDED, note, write_header, write_record};
-use crate::math::rng::{Purpose, Stream, draw, noise, roll};
-use crate::robot::motion::{COLLISION, NO_ACTION, move_body};
-use crate::robot::noise::noise_of;
-use crate::skill::observe::{DICE_ACTUATOR, observe};
-use crate::skill::reward::{passed_door, reward_of, room_of};
+use crate::lesson::record::{CUT, ENDED, note, write_header, write_outcome, write_record};
+use crate::math::rng::{Purpose, Stream, draw, roll};
+use crate::skill::act::{execute, place, sense};
+use crate::skill::choose::NO_CHILD;
+use crate::skill::persist::Options;
 use crate::skill::start::{start_pose, start_region};
 use crate::world::Pose;
+use bytemuck::Zeroable;
 use rayon::prelude::*;
 
 /// Demonstrations tried for each lesson wanted, before the teacher gives up.
@@ -41,6 +41,8 @@ pub struct Demonstration {
     pub start: Pose,
     /// The lesson's words, as they stand in the bank.
     pub lesson: Vec<u32>,
+    /// Sum of the rewards, discounted as the skill's learners do.
+    pub returned: f32,
 }
 
 impl Demonstration {
@@ -136,41 +138,35 @@ impl Teacher<'_> {
     }
 
     fn demonstrate(&self, trial: u32, start: Pose) -> Demonstration {
-        let floor = &self.shared.floor;
-        let terms = noise_of(self.settings);
         let mut scratch = Scratch::default();
+        let mut agent = Agent::zeroed();
         let mut lesson = vec![0; self.plan.lesson_stride as usize];
-        let origin = room_of(&floor.plan, start.x, start.y);
-        let planned_origin = origin_of(floor, start);
-        let (mut pose, mut touch) = (start, 0);
-        let (mut step, mut reward, mut collisions, mut end) = (0, 0.0, 0, 0);
-        while end == 0 {
+        let origin = origin_of(&self.shared.floor, start);
+        let words = self.plan.record_words;
+        let all = (1 << self.plan.children) - 1;
+        let free = Options { applicable: all, choices: all, allowed: all, decision: 1 };
+        place(&mut agent, self.shared, start);
+        loop {
+            let step = agent.step;
             let dice = roll(self.stream(trial, step, Purpose::Teacher));
-            observe(self.shared, &mut scratch, &dice, pose.x, pose.y, pose.heading, touch, terms);
-            let child = self.planner.choose(floor, planned_origin, pose) as u32;
-            let slip = terms.actuator * noise(terms.kind, dice.x[DICE_ACTUATOR], dice.y[DICE_ACTUATOR]) + 1.0;
-            let moved = move_body(floor, pose.x, pose.y, pose.heading, self.plan.action[child as usize], slip);
-            let events = moved.events | passed_door(&floor.plan, origin, moved.x, moved.y);
-            let earned = reward_of(self.settings, events);
-            note(&mut scratch.record, child, NO_ACTION, events, earned);
-            write_record(&mut lesson, &scratch.record, 0, step);
-            pose = Pose { x: moved.x, y: moved.y, heading: moved.heading };
-            touch = moved.bumpers;
-            step += 1;
-            reward += earned;
-            collisions += u32::from(events & COLLISION != 0);
-            if events & self.plan.ends != 0 {
-                end = ENDED;
-            } else if step >= self.settings.max_steps {
-                end = CUT;
+            sense(&mut agent, self.shared, &mut scratch, self.settings, &dice);
+            if step > 0 {
+                write_outcome(&mut lesson, words, 0, step - 1, agent.events, agent.earned);
             }
+            let achieved = agent.events & self.plan.ends != 0;
+            if achieved || step >= self.settings.max_steps {
+                note(&mut scratch.record, NO_CHILD, free);
+                write_record(&mut lesson, &scratch.record, words, 0, step);
+                let end = if achieved { ENDED } else { CUT };
+                write_header(&mut lesson, 0, step, end, agent.reward, agent.collisions);
+                return Demonstration { start, lesson, returned: agent.returned };
+            }
+            let pose = Pose { x: agent.x, y: agent.y, heading: agent.heading };
+            let child = self.planner.choose(&self.shared.floor, origin, pose) as u32;
+            note(&mut scratch.record, child, free);
+            write_record(&mut lesson, &scratch.record, words, 0, step);
+            execute(&mut agent, self.shared, self.settings, self.plan.child[child as usize], &dice);
         }
-        let dice = roll(self.stream(trial, step, Purpose::Teacher));
-        observe(self.shared, &mut scratch, &dice, pose.x, pose.y, pose.heading, touch, terms);
-        note(&mut scratch.record, NO_ACTION, NO_ACTION, 0, 0.0);
-        write_record(&mut lesson, &scratch.record, 0, step);
-        write_header(&mut lesson, 0, step, end, reward, collisions);
-        Demonstration { start, lesson }
     }
 }
 

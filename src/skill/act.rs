@@ -1,0 +1,179 @@
+//! One step of a robot that pursues a skill: it senses, remembers, asks the skills of the tree, and moves.
+//!
+//! The choice is made anew on every primitive step at every level (paper, section VI.A); persistence decides how
+//! free it is.
+
+use crate::learner::layout::{Agent, BASE_WORDS, MAX_CHILDREN, MAX_SKILLS, SKILL_CODE, Settings};
+use crate::learner::memory::{Scratch, Shared};
+use crate::math::functions::flush;
+use crate::math::rng::{Dice, noise};
+use crate::qnet::forward::forward;
+use crate::robot::motion::{COLLISION, NO_ACTION, PASSED_DOOR, move_body};
+use crate::robot::noise::noise_of;
+use crate::skill::choose::choose;
+use crate::skill::encode::encode;
+use crate::skill::observe::{DICE_ACTUATOR, DICE_CHOICE, observe};
+use crate::skill::consult::consult;
+use crate::skill::persist::{IDLE, commit, extend, options, rest};
+use crate::skill::remember::remember;
+use crate::skill::reward::{beside, passed_door, reward_of, room_of};
+use crate::world::Pose;
+
+/// Puts the robot at the start of a trial.
+#[inline(always)]
+pub fn place(agent: &mut Agent, shared: &Shared, pose: Pose) {
+    agent.x = pose.x;
+    agent.y = pose.y;
+    agent.heading = pose.heading;
+    agent.bumpers = 0;
+    agent.step = 0;
+    agent.origin = room_of(&shared.floor.plan, pose.x, pose.y);
+    agent.blocked = NO_ACTION;
+    agent.masks = 0;
+    agent.action = NO_ACTION;
+    agent.events = 0;
+    agent.earned = 0.0;
+    agent.reward = 0.0;
+    agent.returned = 0.0;
+    agent.discount = 1.0;
+    agent.collisions = 0;
+    agent.east_west = 0.0;
+    agent.north_south = 0.0;
+    agent.light = 0.0;
+    agent.door = 0.0;
+    agent.door_cosine = 0.0;
+    agent.door_sine = 0.0;
+    for n in 0..MAX_SKILLS {
+        agent.run[n] = IDLE;
+    }
+}
+
+/// Senses, settles what the last action earned in the terms of the skill pursued, and remembers.
+#[inline(always)]
+pub fn sense(agent: &mut Agent, shared: &Shared, scratch: &mut Scratch, settings: &Settings, dice: &Dice) {
+    let terms = noise_of(settings);
+    observe(shared, scratch, dice, agent.x, agent.y, agent.heading, agent.bumpers, terms);
+    agent.events |= beside(&scratch.record, settings.beside_near, settings.beside_far, agent.action, agent.events);
+    agent.earned = reward_of(settings, agent.events);
+    agent.reward += agent.earned;
+    agent.returned += agent.discount * agent.earned;
+    agent.discount = if agent.step == 0 { 1.0 } else { flush(agent.discount * settings.gamma) };
+    remember(agent, scratch, settings);
+}
+
+/// Q-values of skill `n`, from its nets or from the planner's table.
+#[inline(always)]
+pub fn think(
+    agent: &Agent,
+    shared: &Shared,
+    scratch: &mut Scratch,
+    settings: &[Settings],
+    nets: &[f32],
+    base: u32,
+    n: u32,
+) {
+    let plan = &shared.skills[n as usize];
+    if plan.record_words > BASE_WORDS as u32 {
+        extend(agent, &shared.floor.plan, scratch, plan, &settings[n as usize], n);
+    }
+    if plan.planned > 0 {
+        consult(agent, shared, scratch, plan);
+    } else {
+        encode(shared, scratch, plan);
+        forward(nets, scratch, plan, base);
+    }
+}
+
+/// Asks the skills below the root whose values somebody's applicability depends on, children first.
+#[inline(always)]
+pub fn watch(
+    agent: &Agent,
+    shared: &Shared,
+    scratch: &mut Scratch,
+    settings: &[Settings],
+    nets: &[f32],
+    base: u32,
+    root: u32,
+) {
+    let watched = shared.skills[root as usize].watched;
+    for n in 0..root {
+        if ((watched >> n) & 1) == 1 {
+            think(agent, shared, scratch, settings, nets, base, n);
+            let mut best = -2.0;
+            for child in 0..shared.skills[n as usize].children as usize {
+                let value = scratch.q[child];
+                best = if value > best { value } else { best };
+                scratch.kept[n as usize * MAX_CHILDREN + child] = value;
+            }
+            scratch.value[n as usize] = best;
+        }
+    }
+}
+
+/// Lets the skills below the root choose, down to an action, once the root has chosen `child`.
+#[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "the twin of a shader function, which has no methods")]
+pub fn descend(
+    agent: &mut Agent,
+    shared: &Shared,
+    scratch: &mut Scratch,
+    settings: &[Settings],
+    nets: &[f32],
+    base: u32,
+    root: u32,
+    child: u32,
+    dice: &Dice,
+) -> u32 {
+    let watched = shared.skills[root as usize].watched;
+    let heat = settings[root as usize].child_sharpness;
+    let mut code = shared.skills[root as usize].child[child as usize];
+    let mut active = 1 << root;
+    let mut depth = 1;
+    let mut last = root;
+    while code >= SKILL_CODE as u32 {
+        let n = code - SKILL_CODE as u32;
+        let plan = &shared.skills[n as usize];
+        if ((watched >> n) & 1) == 1 {
+            for other in 0..plan.children as usize {
+                scratch.q[other] = scratch.kept[n as usize * MAX_CHILDREN + other];
+            }
+            if plan.record_words > BASE_WORDS as u32 {
+                extend(agent, &shared.floor.plan, scratch, plan, &settings[n as usize], n);
+            }
+        } else {
+            think(agent, shared, scratch, settings, nets, base, n);
+        }
+        let own = &settings[n as usize];
+        let found = options(agent, scratch, &shared.skills, own, n, own.persist_tests == 1);
+        let word = dice.x[DICE_CHOICE + depth];
+        let chosen = choose(scratch, own, plan.children, found.allowed, heat, false, word);
+        commit(agent, n, chosen, found);
+        code = plan.child[chosen as usize];
+        active |= 1 << n;
+        depth += 1;
+        last = n;
+    }
+    rest(agent, root, active);
+    agent.masks = settings[last as usize].mask_blocked;
+    code
+}
+
+/// Carries out an action; its reward is settled by the next look.
+#[inline(always)]
+pub fn execute(agent: &mut Agent, shared: &Shared, settings: &Settings, action: u32, dice: &Dice) {
+    let terms = noise_of(settings);
+    let slip = terms.actuator * noise(terms.kind, dice.x[DICE_ACTUATOR], dice.y[DICE_ACTUATOR]) + 1.0;
+    let moved = move_body(&shared.floor, agent.x, agent.y, agent.heading, action, slip);
+    let passed = passed_door(&shared.floor.plan, agent.origin, moved.x, moved.y);
+    let hit = (moved.events & COLLISION) == COLLISION;
+    agent.x = moved.x;
+    agent.y = moved.y;
+    agent.heading = moved.heading;
+    agent.bumpers = moved.bumpers;
+    agent.origin = if passed == PASSED_DOOR { room_of(&shared.floor.plan, moved.x, moved.y) } else { agent.origin };
+    agent.blocked = if hit && agent.masks == 1 { action } else { NO_ACTION };
+    agent.action = action;
+    agent.events = moved.events | passed;
+    agent.step += 1;
+    agent.collisions += u32::from(hit);
+}

@@ -1,0 +1,35 @@
+//! The planner in a skill's place: privileged, for it knows floor plan and pose. A baseline.
+//!
+//! Its table in the atlas: columns, rows, rooms of origin, 1 / pitch, then one word for each origin, row, column
+//! and heading: the value, with the child's number in its lowest three bits.
+
+use crate::learner::layout::{Agent, SkillPlan};
+use crate::learner::memory::{Scratch, Shared};
+use crate::skill::encode::STEPS_PER_DEGREE;
+
+/// Words before the first entry.
+pub const TABLE_HEADER: u32 = 4;
+/// Headings of the table.
+pub const TABLE_HEADINGS: u32 = 24;
+/// How far below the best child's value the others stand, which a choice at any usual temperature respects.
+pub const TABLE_GAP: f32 = 1.0;
+
+/// Q-values from the table's entry nearest to the robot.
+#[inline(always)]
+pub fn consult(agent: &Agent, shared: &Shared, scratch: &mut Scratch, plan: &SkillPlan) {
+    let table = plan.planned as usize;
+    let columns = shared.atlas[table];
+    let rows = shared.atlas[table + 1];
+    let origins = shared.atlas[table + 2];
+    let inverse = f32::from_bits(shared.atlas[table + 3]);
+    let column = ((agent.x * inverse + 0.5) as u32).min(columns - 1);
+    let row = ((agent.y * inverse + 0.5) as u32).min(rows - 1);
+    let heading = ((agent.heading * STEPS_PER_DEGREE + 0.5) as u32) % TABLE_HEADINGS;
+    let origin = agent.origin.min(origins - 1);
+    let entry = ((origin * rows + row) * columns + column) * TABLE_HEADINGS + heading;
+    let word = shared.atlas[table + (TABLE_HEADER + entry) as usize];
+    let value = f32::from_bits(word & 0xffff_fff8);
+    for child in 0..plan.children {
+        scratch.q[child as usize] = if child == (word & 7) { value } else { value - TABLE_GAP };
+    }
+}

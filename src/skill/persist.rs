@@ -1,0 +1,108 @@
+//! Which children are applicable, and which may be chosen now: the Applicability Rule and the Persistence Rule
+//! (paper, section VI.B).
+
+use crate::learner::layout::{Agent, BASE_WORDS, MAX_CHILDREN, SKILL_CODE, Settings, SkillPlan, VALUE_WORD, WorldPlan};
+use crate::learner::memory::Scratch;
+use crate::robot::motion::NO_ACTION;
+use crate::skill::choose::NO_CHILD;
+use crate::skill::remember::recall;
+use crate::skill::reward::room_of;
+
+/// State of a skill that does not run.
+pub const IDLE: u32 = 255;
+/// Threshold of a child that is always applicable.
+pub const ALWAYS: f32 = -2.0;
+
+/// What a skill may choose at one step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Options {
+    /// Applicable children.
+    pub applicable: u32,
+    /// What a free choice is made among.
+    pub choices: u32,
+    /// What may be chosen now.
+    pub allowed: u32,
+    /// 1 where the choice is free.
+    pub decision: u32,
+}
+
+/// Completes the record with what only skills over skills are given: the running child, the applicable ones, the
+/// room, the memories, the children's values.
+#[inline(always)]
+pub fn extend(agent: &Agent, world: &WorldPlan, scratch: &mut Scratch, plan: &SkillPlan, settings: &Settings, n: u32) {
+    let mut applicable = 0;
+    for child in 0..plan.children {
+        let code = plan.child[child as usize];
+        let known = code >= SKILL_CODE as u32 && ((plan.thresholded >> child) & 1) == 1;
+        let value = if known { scratch.value[(code as usize) - SKILL_CODE] } else { 0.0 };
+        let above = !known || value > settings.threshold[child as usize];
+        applicable |= if above { 1 << child } else { 0 };
+        scratch.record[VALUE_WORD + child as usize] = value.to_bits();
+    }
+    for child in plan.children as usize..MAX_CHILDREN {
+        scratch.record[VALUE_WORD + child] = 0;
+    }
+    let running = agent.run[n as usize] & 0xff;
+    scratch.record[BASE_WORDS] = running | applicable << 8 | room_of(world, agent.x, agent.y) << 16;
+    recall(agent, scratch);
+}
+
+/// What skill `n` may choose. For a skill over actions that is every action but a blocked one.
+#[inline(always)]
+pub fn options(
+    agent: &Agent,
+    scratch: &Scratch,
+    skills: &[SkillPlan],
+    settings: &Settings,
+    n: u32,
+    persist: bool,
+) -> Options {
+    let plan = &skills[n as usize];
+    let all = (1 << plan.children) - 1;
+    let mut open = 0;
+    let mut actions = 0;
+    for child in 0..plan.children {
+        let code = plan.child[child as usize];
+        // A lone child is always available.
+        let free = code != agent.blocked || plan.children == 1;
+        open |= if free { 1 << child } else { 0 };
+        actions |= if code < SKILL_CODE as u32 { 1 << child } else { 0 };
+    }
+    let high = actions != all;
+    let applicable = if high { (scratch.record[BASE_WORDS] >> 8) & 0xff } else { all };
+    let suited = if settings.applicability == 1 { applicable & open } else { open };
+    let choices = if suited != 0 { suited } else { open };
+    let run = agent.run[n as usize];
+    let running = run & 0xff;
+    let since = (run >> 8) & 0xff;
+    let before = (run >> 16) & 0xff;
+    let own = if running < MAX_CHILDREN as u32 { 1 << running } else { 0 };
+    let code = if own != 0 { plan.child[running as usize] } else { NO_ACTION };
+    // An action ends by itself; a skill ends where its goal is achieved.
+    let skill = own != 0 && code >= SKILL_CODE as u32;
+    let ends = if skill { skills[(code as usize) - SKILL_CODE].ends } else { 0 };
+    let achieved = (agent.events & ends) != 0;
+    let fresh = (applicable & !before & !own) != 0;
+    let lost = settings.interrupt == 1 && (applicable & own) == 0;
+    let late = settings.decision_steps > 0 && since >= settings.decision_steps;
+    let free = !persist || !skill || achieved || fresh || lost || late;
+    Options { applicable, choices, allowed: if free { choices } else { own }, decision: u32::from(free) }
+}
+
+/// Notes that skill `n` has chosen `child`.
+#[inline(always)]
+pub fn commit(agent: &mut Agent, n: u32, child: u32, options: Options) {
+    let since = (agent.run[n as usize] >> 8) & 0xff;
+    let counted = if options.decision == 1 { 1 } else { since + 1 };
+    let held = if counted < 255 { counted } else { 255 };
+    agent.run[n as usize] = child | held << 8 | options.applicable << 16;
+}
+
+/// Skills that were not asked at this step no longer run.
+#[inline(always)]
+pub fn rest(agent: &mut Agent, root: u32, active: u32) {
+    for n in 0..root {
+        agent.run[n as usize] = if ((active >> n) & 1) == 1 { agent.run[n as usize] } else { IDLE };
+    }
+    debug_assert!(NO_CHILD == IDLE, "the low byte of an idle skill's state says that no child runs");
+}
