@@ -1,17 +1,25 @@
 //! From learners' results to the files of a run folder.
 
+use super::family::group_of;
 use super::group::{Group, LearnerId};
 use super::result::{LearnerResult, RoomSums};
+use super::train::unpack;
+use crate::config::plan::Child;
 use crate::config::plan::Plan;
 use crate::learner::layout::{LANES, ROW_WORDS};
 use crate::qnet::forward::net_of;
 use crate::record::tables::{
-    EVALUATIONS, EvaluationRow, Names, PLANNER, TRIALS, TrialRow, write_evaluations, write_trials,
+    EVALUATIONS, EvaluationRow, Names, PLANNER, TRAINED, TRIALS, TrialRow, write_evaluations, write_trials,
 };
+use crate::record::trajectories::{self, Trajectory, write_trajectories};
 use crate::record::weights::{NetWeights, SkillWeights, write_weights};
 use crate::record::{PlaceReading, RecordError, places};
+use crate::world::World;
 use glam::Vec2;
 use std::collections::BTreeMap;
+
+/// Room of a test that starts in none.
+const NO_ROOM: &str = "none";
 
 /// All results of an experiment.
 #[derive(Debug)]
@@ -24,6 +32,8 @@ pub struct Results<'a> {
     pub learners: BTreeMap<LearnerId, LearnerResult>,
     /// What the sensors read at the named places.
     pub places: Vec<PlaceReading>,
+    /// Example trials.
+    pub trajectories: Vec<Trajectory>,
 }
 
 impl Results<'_> {
@@ -37,18 +47,26 @@ impl Results<'_> {
         let evaluations = write_evaluations(&self.evaluation_rows(&names), &names)?;
         let tables = [(TRIALS.to_owned(), trials), (EVALUATIONS.to_owned(), evaluations)];
         let readings = (places::FILE.to_owned(), places::write_places(&self.places)?);
+        let examples = (trajectories::FILE.to_owned(), write_trajectories(&self.trajectories)?);
         let weights =
             self.learners.values().map(|result| self.weights(result)).collect::<Result<Vec<_>, RecordError>>()?;
-        Ok(tables.into_iter().chain([readings]).chain(weights))
+        Ok(tables.into_iter().chain([readings, examples]).chain(weights))
     }
 
     fn names(&self) -> Names {
         let mut names = Names {
             arms: self.plan.arms.iter().map(|arm| arm.name.clone()).collect(),
             skills: Vec::new(),
-            rooms: self.plan.world.rooms.iter().map(|room| room.name.clone()).collect(),
+            variants: vec![TRAINED.to_owned()],
+            rooms: Vec::new(),
         };
-        names.rooms.push("none".to_owned());
+        names.variants.extend(self.plan.alterations.iter().map(|alteration| alteration.name.clone()));
+        for room in self.plan.worlds.iter().flat_map(|placed| &placed.world.rooms) {
+            if !names.rooms.contains(&room.name) {
+                names.rooms.push(room.name.clone());
+            }
+        }
+        names.rooms.push(NO_ROOM.to_owned());
         for skill in self.plan.arms.iter().flat_map(|arm| &arm.skills) {
             if !names.skills.contains(&skill.name) {
                 names.skills.push(skill.name.clone());
@@ -98,14 +116,16 @@ impl Results<'_> {
 
     fn evaluation_rows(&self, names: &Names) -> Vec<EvaluationRow> {
         let mut rows = Vec::new();
-        let mut push = |mut row: EvaluationRow, rooms: &[RoomSums]| {
+        let mut push = |mut row: EvaluationRow, world: &World, rooms: &[RoomSums]| {
             for (room, sums) in rooms.iter().enumerate().filter(|(_, sums)| sums.episodes > 0) {
-                row.room = room as u32;
+                let name = world.rooms.get(room).map_or(NO_ROOM, |room| &room.name);
+                row.room = names.rooms.iter().position(|known| known == name).unwrap_or(0) as u32;
                 row.episodes = sums.episodes;
                 row.successes = sums.successes;
                 row.steps = sums.steps;
                 row.collisions = sums.collisions;
                 row.reward = sums.reward;
+                row.returned = sums.returned;
                 rows.push(row);
             }
         };
@@ -116,11 +136,13 @@ impl Results<'_> {
             skill: 0,
             trials: 0,
             actions: 0,
+            variant: 0,
             room: 0,
             episodes: 0,
             successes: 0,
             steps: 0,
             reward: 0.0,
+            returned: 0.0,
             collisions: 0,
         };
         for (id, result) in &self.learners {
@@ -131,24 +153,32 @@ impl Results<'_> {
                     skill: self.skill_index(names, id.arm, test.skill),
                     trials: test.trials,
                     actions: test.actions,
+                    variant: test.variant,
                     ..blank
                 };
-                push(row, &test.rooms);
+                let altered = test.variant.checked_sub(1).map(|number| self.plan.alterations[number as usize].world);
+                let world = altered.unwrap_or(self.plan.arms[id.arm].world);
+                push(row, &self.plan.worlds[world].world, &test.rooms);
             }
         }
         for (number, group) in self.groups.iter().enumerate() {
+            let world = self.plan.world_of(&self.plan.arms[group.arms[0]]);
             for (skill, tests) in group.bounds.iter().enumerate() {
-                let mut rooms = vec![RoomSums::default(); names.rooms.len()];
-                for test in tests {
+                let mut rooms = vec![RoomSums::default(); world.rooms.len() + 1];
+                for test in tests.iter().flatten() {
                     let start = Vec2::new(test.start.x, test.start.y);
-                    let room = self.plan.world.room_of(start).unwrap_or(names.rooms.len() - 1);
-                    rooms[room].add(test.steps(), test.achieved(), f64::from(test.reward()), test.collisions());
+                    rooms[world.room_of(start).unwrap_or(world.rooms.len())].add(&RoomSums {
+                        episodes: 1,
+                        successes: u32::from(test.achieved()),
+                        steps: test.steps(),
+                        collisions: test.collisions(),
+                        reward: f64::from(test.reward()),
+                        returned: f64::from(test.returned),
+                    });
                 }
                 let arm = (self.plan.arms.len() + number) as u32;
-                push(
-                    EvaluationRow { arm, skill: self.skill_index(names, group.arms[0], skill as u32), ..blank },
-                    &rooms,
-                );
+                let skill = self.skill_index(names, group.arms[0], skill as u32);
+                push(EvaluationRow { arm, skill, ..blank }, world, &rooms);
             }
         }
         rows
@@ -156,29 +186,35 @@ impl Results<'_> {
 
     fn weights(&self, result: &LearnerResult) -> Result<(String, Vec<u8>), RecordError> {
         let arm = &self.plan.arms[result.id.arm];
-        let shapes = self
-            .groups
-            .iter()
-            .find(|group| group.arms.contains(&result.id.arm))
-            .map_or(&[][..], |group| group.shape.skills.as_slice());
+        let shape = &group_of(self.groups, result.id.arm).shape;
+        let nets = unpack(&result.weights, &shape.skills, shape.nets_stride);
         let mut skills = Vec::new();
-        for (skill, plan) in arm.skills.iter().zip(shapes) {
+        for (skill, plan) in arm.skills.iter().zip(&shape.skills) {
+            // A mirror image has no nets of its own, nor has what the planner decides.
+            if skill.mirror.is_some() || skill.planned {
+                continue;
+            }
             let hidden = skill.learning.hidden as usize;
             let inputs = plan.inputs as usize;
-            let mut nets = Vec::new();
-            for (child, action) in skill.children.iter().enumerate() {
-                let rows = &result.nets[net_of(plan, 0, child as u32) as usize..].as_chunks::<LANES>().0[..inputs + 3];
-                nets.push(NetWeights {
-                    child: action.name().to_owned(),
+            let outputs = plan.outputs as usize;
+            let mut written = Vec::new();
+            for (number, child) in skill.children.iter().enumerate() {
+                let (net, output) = if plan.nets == 1 { (0, number) } else { (number, 0) };
+                let rows = &nets[net_of(plan, 0, net as u32) as usize..].as_chunks::<LANES>().0[..plan.rows as usize];
+                written.push(NetWeights {
+                    child: match child {
+                        Child::Action(action) => action.name().to_owned(),
+                        Child::Skill(below) => arm.skills[*below].name.clone(),
+                    },
                     inputs,
                     hidden,
                     w1: (0..hidden).flat_map(|unit| (0..inputs).map(move |input| rows[input][unit])).collect(),
                     b1: rows[inputs][..hidden].to_vec(),
-                    w2: rows[inputs + 1][..hidden].to_vec(),
-                    b2: rows[inputs + 2][0],
+                    w2: rows[inputs + 1 + output][..hidden].to_vec(),
+                    b2: rows[inputs + 1 + outputs][output],
                 });
             }
-            skills.push(SkillWeights { skill: skill.name.clone(), nets });
+            skills.push(SkillWeights { skill: skill.name.clone(), nets: written });
         }
         let metadata = BTreeMap::from([
             ("arm".to_owned(), arm.name.clone()),
@@ -186,8 +222,21 @@ impl Results<'_> {
             ("run_seed".to_owned(), self.plan.run_seed.to_string()),
             ("activation".to_owned(), "tanh".to_owned()),
             ("transitions".to_owned(), result.updates.to_string()),
+            ("thresholds".to_owned(), self.thresholds(result)),
         ]);
         let path = format!("skills/{}-{}.safetensors", arm.name, result.id.seed);
         Ok((path, write_weights(&skills, &metadata)?))
+    }
+
+    /// The root's thresholds as `child=value`, with commas between; empty for a root without any.
+    fn thresholds(&self, result: &LearnerResult) -> String {
+        let arm = &self.plan.arms[result.id.arm];
+        let Some(root) = arm.skills.last() else { return String::new() };
+        let own = root.children.iter().zip(&root.applicable).zip(&result.thresholds);
+        let text = own.filter_map(|((child, threshold), value)| match child {
+            Child::Skill(below) if threshold.is_some() => Some(format!("{}={value}", arm.skills[*below].name)),
+            _ => None,
+        });
+        text.collect::<Vec<_>>().join(",")
     }
 }

@@ -1,12 +1,14 @@
 //! Arms that can train in one cohort: their skills agree in all but numbers, and one teacher serves them.
 
 use crate::backend::Cohort;
-use crate::config::plan::{Arm, Plan, Skill};
+use crate::config::plan::{Action, Arm, Child, Event, Plan, Skill};
 use crate::learner::build::{Shape, ShapeError};
+use crate::learner::layout::{BASE_WORDS, SkillPlan};
 use crate::learner::memory::Shared;
 use crate::robot::floor::Floor;
 use crate::teacher::bank::{Demonstration, Teacher, TeacherError, teacher_settings};
-use crate::teacher::planner::{PITCH, Planner};
+use crate::teacher::planner::{PITCH, Planner, Terms};
+use std::rc::Rc;
 
 /// One learner of the experiment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -26,8 +28,10 @@ pub struct Group {
     pub shape: Shape,
     /// The floor, the shapes, and the bank of lessons.
     pub shared: Shared,
-    /// The planner's own test trials of each skill.
-    pub bounds: Vec<Vec<Demonstration>>,
+    /// The same in the world of each of the plan's alterations; no lessons.
+    pub altered: Vec<Shared>,
+    /// The planner's own test trials of each skill; none where an earlier group has them.
+    pub bounds: Vec<Option<Vec<Demonstration>>>,
 }
 
 /// Why an experiment cannot be set up.
@@ -53,65 +57,119 @@ pub fn groups(plan: &Plan) -> Result<Vec<Group>, SetupError> {
             None => members.push(vec![index]),
         }
     }
-    members.into_iter().map(|arms| Group::new(plan, arms)).collect()
+    let mut solved = Solved::default();
+    members.into_iter().map(|arms| Group::new(plan, arms, &mut solved)).collect()
 }
 
 /// Whether two arms differ in nothing but per-learner numbers that the teacher does not see.
 fn alike(a: &Arm, b: &Arm) -> bool {
-    let bare = |skill: &Skill, like: &Skill| Skill {
-        learning: like.learning.clone(),
-        lessons: like.lessons,
-        trials: like.trials,
-        ..skill.clone()
+    let bare = |skill: &Skill, like: &Skill| {
+        let mut bare = Skill {
+            learning: like.learning.clone(),
+            lessons: like.lessons,
+            trials: like.trials,
+            tested_at: like.tested_at.clone(),
+            choice: like.choice,
+            persistence: like.persistence,
+            ..skill.clone()
+        };
+        bare.learning.shared_net = skill.learning.shared_net;
+        for (own, other) in bare.applicable.iter_mut().zip(&like.applicable) {
+            *own = if own.is_some() && other.is_some() { *other } else { *own };
+        }
+        bare
     };
-    a.noise == b.noise
+    (a.world, a.noise, a.robot) == (b.world, b.noise, b.robot)
         && a.skills.len() == b.skills.len()
         && a.skills.iter().zip(&b.skills).all(|(a, b)| *a == bare(b, a))
 }
 
+/// A task as the planner sees it.
+#[derive(Debug, Clone, PartialEq)]
+struct Task {
+    world: usize,
+    terms: Terms,
+    reward: [f32; Event::ALL.len()],
+    ends: u32,
+    children: Vec<Child>,
+}
+
+/// Planners, and which of their tests have been made: arms share most tasks.
+#[derive(Debug, Default)]
+struct Solved {
+    planners: Vec<(Task, Rc<Planner>)>,
+    tested: Vec<(Task, String, u32)>,
+}
+
+impl Solved {
+    fn planner(&mut self, task: &Task, make: impl FnOnce() -> Planner) -> Rc<Planner> {
+        if let Some((_, planner)) = self.planners.iter().find(|(known, _)| known == task) {
+            return Rc::clone(planner);
+        }
+        let planner = Rc::new(make());
+        self.planners.push((task.clone(), Rc::clone(&planner)));
+        planner
+    }
+
+    /// Whether these tests are still to be made; from now on they are not.
+    fn claim(&mut self, task: &Task, skill: &Skill) -> bool {
+        let test = (task.clone(), skill.tests.clone(), skill.max_steps);
+        let open = !self.tested.contains(&test);
+        if open {
+            self.tested.push(test);
+        }
+        open
+    }
+}
+
 impl Group {
-    fn new(plan: &Plan, arms: Vec<usize>) -> Result<Self, SetupError> {
+    fn new(plan: &Plan, arms: Vec<usize>, solved: &mut Solved) -> Result<Self, SetupError> {
         let members: Vec<&Arm> = arms.iter().map(|arm| &plan.arms[*arm]).collect();
-        let mut shape = Shape::new(&plan.world, &members)?;
-        let floor = Floor::new(&shape.atlas.plan);
-        let mut shared = Shared {
-            floor,
-            skills: shape.skills.clone(),
-            atlas: std::mem::take(&mut shape.atlas.words),
-            bank: Vec::new(),
-        };
+        let first = members[0];
+        let world = plan.world_of(first);
+        let (shape, mut shared) = lay_out(&members, world)?;
         let mut bounds = Vec::new();
-        for (number, skill) in members[0].skills.iter().enumerate() {
+        let (settings, ..) = shape.learner(first, plan.run_seed, 0);
+        for (number, skill) in first.skills.iter().enumerate() {
             let taught = members.iter().any(|arm| arm.skills[number].lessons > 0);
-            let (settings, ..) = shape.learner(members[0], plan.run_seed, 0);
-            let settings = teacher_settings(&settings[number]);
-            let planner = Planner::new(
-                &plan.world,
-                &shared.floor,
-                skill,
-                &members[0].noise,
-                plan.teacher.discount,
-                plan.teacher.backward_cost,
-                PITCH,
-            );
+            let task = task_of(plan, first, skill);
+            // A mirror image has nothing of its own to plan.
+            if skill.mirror.is_some() {
+                bounds.push(None);
+                continue;
+            }
+            let planner = solved.planner(&task, || Planner::new(world, &shared, skill, &task.terms));
+            let driven = driven(&shared.skills[number], skill);
             let teacher = Teacher {
                 shared: &shared,
                 planner: &planner,
-                plan: &shared.skills[number],
-                settings: &settings,
+                plan: &driven,
+                settings: &teacher_settings(&settings[number]),
                 number: number as u32,
             };
             let bank = if taught { teacher.bank(skill, plan.teacher.bank)? } else { Vec::new() };
-            bounds.push(teacher.tests(plan.teacher.episodes));
-            shared.skills[number].bank_offset = shared.bank.len() as u32;
-            shared.skills[number].bank_lessons = if taught { plan.teacher.bank } else { 0 };
+            bounds.push(solved.claim(&task, skill).then(|| teacher.tests(plan.teacher.episodes)));
+            let table = skill.planned.then(|| planner.table(&shared, settings[number].value_scale));
+            let own = &mut shared.skills[number];
+            own.bank_offset = shared.bank.len() as u32;
+            own.bank_lessons = if taught { plan.teacher.bank } else { 0 };
+            if let Some(table) = table {
+                own.planned = shared.atlas.len() as u32;
+                shared.atlas.extend(table);
+            }
             shared.bank.extend(bank);
         }
         // No buffer may be empty, even where nobody is taught.
         if shared.bank.is_empty() {
             shared.bank.push(0);
         }
-        Ok(Self { arms, shape, shared, bounds })
+        let mut altered = Vec::new();
+        for alteration in &plan.alterations {
+            let (_, mut other) = lay_out(&members, &plan.worlds[alteration.world].world)?;
+            other.bank.push(0);
+            altered.push(other);
+        }
+        Ok(Self { arms, shape, shared, altered, bounds })
     }
 
     /// The group's learners, arm by arm.
@@ -143,4 +201,41 @@ impl Group {
         }
         cohort
     }
+}
+
+fn lay_out(members: &[&Arm], world: &crate::world::World) -> Result<(Shape, Shared), ShapeError> {
+    let mut shape = Shape::new(world, members)?;
+    let shared = Shared {
+        floor: Floor::new(&shape.atlas.plan),
+        skills: shape.skills.clone(),
+        atlas: std::mem::take(&mut shape.atlas.words),
+        bank: Vec::new(),
+    };
+    Ok((shape, shared))
+}
+
+fn task_of(plan: &Plan, arm: &Arm, skill: &Skill) -> Task {
+    let terms = Terms {
+        noise: arm.noise,
+        robot: arm.robot,
+        discount: plan.teacher.discount,
+        backward_cost: plan.teacher.backward_cost,
+        pitch: PITCH,
+    };
+    let all = || Action::ALL.map(Child::Action).to_vec();
+    let children = if skill.is_high() { all() } else { skill.children.clone() };
+    Task { world: arm.world, terms, reward: skill.reward, ends: skill.ends, children }
+}
+
+/// A skill's shape as the planner drives it: over actions.
+fn driven(plan: &SkillPlan, skill: &Skill) -> SkillPlan {
+    let mut driven = *plan;
+    if skill.is_high() {
+        driven.children = Action::ALL.len() as u32;
+        driven.record_words = BASE_WORDS as u32;
+        for (code, action) in driven.child.iter_mut().zip(Action::ALL) {
+            *code = action as u32;
+        }
+    }
+    driven
 }

@@ -3,10 +3,13 @@
 //! Learners are independent, so how they are grouped, in which order they train, and how often the run is
 //! interrupted changes no byte of any result.
 
+pub mod family;
 pub mod files;
 pub mod group;
 pub mod parity;
 pub mod result;
 pub mod run;
 pub mod senses;
+pub mod thresholds;
 pub mod train;
+pub mod trajectories;

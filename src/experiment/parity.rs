@@ -5,7 +5,7 @@ use super::senses::{floor_only, robot_at};
 use crate::backend::parity::{self, Difference, UNWRITTEN};
 use crate::backend::{Backend, BackendError, Cohort, Stop, Test};
 use crate::config::plan::{NoiseKind, Plan};
-use crate::learner::layout::{Episode, RECORD_WORDS, Robot};
+use crate::learner::layout::{BASE_WORDS, Episode, Robot};
 use crate::learner::memory::Shared;
 use crate::math::rng::philox;
 use crate::world::Pose;
@@ -59,11 +59,11 @@ fn robots(plan: &Plan) -> Vec<Robot> {
     let noise = plan.arms[0].noise;
     let words = (0..u32::MAX).map(|number| philox([number, 0, 0, 0], [11, 22]));
     let poses = words.map(|words| Pose {
-        x: (words[0] >> 8) as f32 / 16_777_216.0 * plan.world.size.x,
-        y: (words[1] >> 8) as f32 / 16_777_216.0 * plan.world.size.y,
+        x: (words[0] >> 8) as f32 / 16_777_216.0 * plan.world().size.x,
+        y: (words[1] >> 8) as f32 / 16_777_216.0 * plan.world().size.y,
         heading: (words[2] % 360) as f32,
     });
-    let free = poses.filter(|pose| plan.world.is_free(Vec2::new(pose.x, pose.y)));
+    let free = poses.filter(|pose| plan.world().is_free(Vec2::new(pose.x, pose.y)));
     (0..ROBOTS)
         .zip(free)
         .map(|(number, pose)| {
@@ -94,7 +94,7 @@ impl Work {
         };
         let mut cohorts: Vec<Cohort> = groups.iter().map(cohort).collect();
         cohorts.retain(|cohort| !cohort.cursors.is_empty());
-        Ok(Self { cohorts, floor: floor_only(&plan.world), robots: robots(&plan) })
+        Ok(Self { cohorts, floor: floor_only(plan.world()), robots: robots(&plan) })
     }
 
     /// Memory of the learners before their first quantum, one cohort per group of arms.
@@ -125,7 +125,7 @@ impl Work {
             for (number, robot) in robots.iter_mut().enumerate() {
                 robot.action = philox([number as u32, step, 1, 0], [33, 44])[0] % 6;
                 robot.events = UNWRITTEN;
-                robot.record = [UNWRITTEN; RECORD_WORDS];
+                robot.record = [UNWRITTEN; BASE_WORDS];
             }
             backend.step(&self.floor, &mut robots, 1 + step % 2)?;
             sample.robots.push(robots.clone());

@@ -15,16 +15,19 @@ pub struct RoomSums {
     pub collisions: u32,
     /// Reward.
     pub reward: f64,
+    /// Reward, discounted from the start of each trial.
+    pub returned: f64,
 }
 
 impl RoomSums {
-    /// Counts one trial in.
-    pub fn add(&mut self, steps: u32, achieved: bool, reward: f64, collisions: u32) {
-        self.episodes += 1;
-        self.successes += u32::from(achieved);
-        self.steps += steps;
-        self.collisions += collisions;
-        self.reward += reward;
+    /// Counts other trials in.
+    pub fn add(&mut self, other: &Self) {
+        self.episodes += other.episodes;
+        self.successes += other.successes;
+        self.steps += other.steps;
+        self.collisions += other.collisions;
+        self.reward += other.reward;
+        self.returned += other.returned;
     }
 }
 
@@ -37,6 +40,8 @@ pub struct TestResult {
     pub trials: u32,
     /// Actions executed before the test.
     pub actions: u32,
+    /// 0 for the circumstances of training, else the number of the plan's alteration, counted from 1.
+    pub variant: u32,
     /// One entry per room, and one for starts in no room.
     pub rooms: Vec<RoomSums>,
 }
@@ -54,8 +59,10 @@ pub struct LearnerResult {
     pub tests: Vec<TestResult>,
     /// Rows of the trial table.
     pub rows: Vec<u32>,
-    /// Nets, moments and clocks as they ended.
-    pub nets: Vec<f32>,
+    /// Weights of all nets as they ended.
+    pub weights: Vec<f32>,
+    /// Thresholds of the root's children.
+    pub thresholds: Vec<f32>,
 }
 
 /// A committed part does not hold what it should.
@@ -66,24 +73,35 @@ pub struct PartError;
 impl LearnerResult {
     /// A learner that has left nothing yet.
     pub fn new(id: LearnerId) -> Self {
-        Self { id, failed: false, updates: 0, tests: Vec::new(), rows: Vec::new(), nets: Vec::new() }
+        Self {
+            id,
+            failed: false,
+            updates: 0,
+            tests: Vec::new(),
+            rows: Vec::new(),
+            weights: Vec::new(),
+            thresholds: Vec::new(),
+        }
     }
 
     fn write(&self, words: &mut Vec<u32>) {
         words.extend([self.id.arm as u32, self.id.seed, u32::from(self.failed), self.updates]);
         words.push(self.tests.len() as u32);
         for test in &self.tests {
-            words.extend([test.skill, test.trials, test.actions, test.rooms.len() as u32]);
+            words.extend([test.skill, test.trials, test.actions, test.variant, test.rooms.len() as u32]);
             for room in &test.rooms {
-                let bits = room.reward.to_bits();
                 words.extend([room.episodes, room.successes, room.steps, room.collisions]);
-                words.extend([bits as u32, (bits >> 32) as u32]);
+                for bits in [room.reward.to_bits(), room.returned.to_bits()] {
+                    words.extend([bits as u32, (bits >> 32) as u32]);
+                }
             }
         }
         words.push(self.rows.len() as u32);
         words.extend(&self.rows);
-        words.push(self.nets.len() as u32);
-        words.extend(self.nets.iter().map(|weight| weight.to_bits()));
+        for values in [&self.weights, &self.thresholds] {
+            words.push(values.len() as u32);
+            words.extend(values.iter().map(|value| value.to_bits()));
+        }
     }
 
     fn read(reader: &mut Reader<'_>) -> Result<Self, PartError> {
@@ -93,19 +111,19 @@ impl LearnerResult {
         result.updates = updates;
         let [tests] = reader.words()?;
         for _test in 0..tests {
-            let [skill, trials, actions, count] = reader.words()?;
+            let [skill, trials, actions, variant, count] = reader.words()?;
             let mut rooms = Vec::new();
             for _room in 0..count {
-                let [episodes, successes, steps, collisions, low, high] = reader.words()?;
-                let reward = f64::from_bits(u64::from(low) | u64::from(high) << 32);
-                rooms.push(RoomSums { episodes, successes, steps, collisions, reward });
+                let [episodes, successes, steps, collisions] = reader.words()?;
+                let (reward, returned) = (reader.double()?, reader.double()?);
+                rooms.push(RoomSums { episodes, successes, steps, collisions, reward, returned });
             }
-            result.tests.push(TestResult { skill, trials, actions, rooms });
+            result.tests.push(TestResult { skill, trials, actions, variant, rooms });
         }
         let [rows] = reader.words()?;
         result.rows = reader.slice(rows as usize)?.to_vec();
-        let [nets] = reader.words()?;
-        result.nets = reader.slice(nets as usize)?.iter().map(|bits| f32::from_bits(*bits)).collect();
+        result.weights = reader.singles()?;
+        result.thresholds = reader.singles()?;
         Ok(result)
     }
 }
@@ -146,6 +164,16 @@ impl<'a> Reader<'a> {
     fn words<const N: usize>(&mut self) -> Result<[u32; N], PartError> {
         self.slice(N)?.try_into().map_err(|_| PartError)
     }
+
+    fn double(&mut self) -> Result<f64, PartError> {
+        let [low, high] = self.words()?;
+        Ok(f64::from_bits(u64::from(low) | u64::from(high) << 32))
+    }
+
+    fn singles(&mut self) -> Result<Vec<f32>, PartError> {
+        let [count] = self.words()?;
+        Ok(self.slice(count as usize)?.iter().map(|bits| f32::from_bits(*bits)).collect())
+    }
 }
 
 #[cfg(test)]
@@ -155,10 +183,11 @@ mod tests {
     fn example() -> Vec<LearnerResult> {
         let mut result = LearnerResult::new(LearnerId { arm: 2, seed: 9 });
         let mut rooms = vec![RoomSums::default(); 2];
-        rooms[1].add(7, true, -0.1, 3);
-        result.tests.push(TestResult { skill: 0, trials: 5, actions: 60, rooms });
+        rooms[1].add(&RoomSums { episodes: 1, successes: 1, steps: 7, collisions: 3, reward: -0.1, returned: 0.2 });
+        result.tests.push(TestResult { skill: 0, trials: 5, actions: 60, variant: 2, rooms });
         result.rows = vec![1, 2, 3];
-        result.nets = vec![0.5, -0.0];
+        result.weights = vec![0.5, -0.0];
+        result.thresholds = vec![-2.0, 0.25];
         vec![result, LearnerResult::new(LearnerId { arm: 0, seed: 1 })]
     }
 

@@ -1,10 +1,12 @@
 //! Runs an experiment into a run folder: cohort after cohort, each committed before the next begins.
 
+use super::family::{families, group_of};
 use super::files::Results;
 use super::group::{Group, LearnerId};
 use super::result::{LearnerResult, decode, encode};
 use super::senses;
-use super::train::train;
+use super::train::{train, train_stem};
+use super::trajectories::trajectories;
 use crate::backend::{Backend, BackendError};
 use crate::config::plan::Plan;
 use crate::record::{Provenance, RecordError, RunFolder};
@@ -54,23 +56,45 @@ pub fn run(
     let trials_of = |id: &LearnerId| plan.arms[id.arm].skills.iter().map(|skill| u64::from(skill.trials)).sum::<u64>();
     let mut finished: u64 = learners.keys().map(trials_of).sum();
     observer.trials(finished);
-    for group in groups {
-        let open: Vec<LearnerId> = group.learners(plan).into_iter().filter(|id| !learners.contains_key(id)).collect();
-        let size = backend.cohort_size(group.shape.bytes_per_learner());
-        for cohort in open.chunks(options.cohort.unwrap_or(size).max(1)) {
-            let results = train(plan, group, cohort, backend, &mut |trials| observer.trials(finished + trials))?;
-            folder.commit_part(&part_name(cohort), &encode(&results))?;
-            finished += cohort.iter().map(trials_of).sum::<u64>();
-            learners.extend(results.into_iter().map(|result| (result.id, result)));
-            observer.committed(learners.len());
+    for family in families(plan) {
+        let open = family.open_seeds(plan, |id| learners.contains_key(id));
+        let size = options.cohort.unwrap_or(backend.cohort_size(family.bytes_per_learner(groups))).max(1);
+        for seeds in open.chunks(size) {
+            let lacking = |arm: usize, learners: &BTreeMap<LearnerId, LearnerResult>| -> Vec<LearnerId> {
+                let ids = seeds.iter().map(|seed| LearnerId { arm, seed: *seed });
+                ids.filter(|id| !learners.contains_key(id)).collect()
+            };
+            let mut stems = Vec::new();
+            if family.stem {
+                let arm = family.arms[0];
+                let lacked: usize = family.arms.iter().map(|arm| lacking(*arm, &learners).len()).sum();
+                // The stem's trials count for every learner that will branch from it.
+                let share = |trials: u64| trials * lacked as u64 / seeds.len() as u64;
+                let progress = &mut |trials| observer.trials(finished + share(trials));
+                stems = train_stem(plan, group_of(groups, arm), (arm, seeds), backend, progress)?;
+            }
+            for arm in &family.arms {
+                let ids = lacking(*arm, &learners);
+                if ids.is_empty() {
+                    continue;
+                }
+                let group = group_of(groups, *arm);
+                let progress = &mut |trials| observer.trials(finished + trials);
+                let results = train(plan, group, &ids, &stems, backend, progress)?;
+                folder.commit_part(&part_name(&ids), &encode(&results))?;
+                finished += ids.iter().map(trials_of).sum::<u64>();
+                learners.extend(results.into_iter().map(|result| (result.id, result)));
+                observer.committed(learners.len());
+            }
         }
     }
     let failed = learners.values().filter(|result| result.failed).count();
     if failed > 0 {
         provenance.notes.insert("diverged learners".to_owned(), failed.to_string());
     }
-    let places = senses::places(&plan.world, backend)?;
-    let results = Results { plan, groups, learners, places };
+    let places = senses::places(plan.world(), backend)?;
+    let trajectories = trajectories(plan, groups, &learners);
+    let results = Results { plan, groups, learners, places, trajectories };
     provenance.finished = Some(humantime::format_rfc3339_seconds(SystemTime::now()).to_string());
     folder.finish(results.files()?, provenance)?;
     Ok(())

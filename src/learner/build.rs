@@ -91,7 +91,8 @@ impl Shape {
     pub fn learner(&self, arm: &Arm, run_seed: u32, seed: u32) -> (Vec<Settings>, Cursor, Vec<f32>) {
         let mut nets = vec![0.0; self.nets_stride];
         let settings: Vec<Settings> = arm.skills.iter().map(|skill| settings_of(skill, arm, run_seed, seed)).collect();
-        for (number, plan) in self.skills.iter().enumerate().filter(|(number, _)| arm.skills[*number].mirror.is_none()) {
+        for (number, plan) in self.skills.iter().enumerate().filter(|(number, _)| arm.skills[*number].mirror.is_none())
+        {
             init(&mut nets, plan, number as u32, &settings[number]);
         }
         (settings, Cursor::zeroed(), nets)
@@ -197,7 +198,9 @@ fn sonar_table(input: Input) -> [f32; SONAR_CODES] {
     std::array::from_fn(|reading| {
         let d = reading as f64;
         let code = match input {
-            Input::Sonar { scale } | Input::SonarCompass { scale } => 2.0 * (-(d - 12.0) / f64::from(scale)).exp() - 1.0,
+            Input::Sonar { scale } | Input::SonarCompass { scale } => {
+                2.0 * (-(d - 12.0) / f64::from(scale)).exp() - 1.0
+            }
             _ => 2.0 * d / 127.0 - 1.0,
         };
         code as f32

@@ -12,6 +12,7 @@ pub mod folder;
 pub mod manifest;
 pub mod places;
 pub mod tables;
+pub mod trajectories;
 pub mod weights;
 
 pub use error::RecordError;
@@ -20,7 +21,8 @@ pub use folder::{RunFolder, State};
 pub use manifest::{Manifest, Provenance};
 pub use places::PlaceReading;
 pub use tables::{EvaluationRow, Names, TrialRow};
+pub use trajectories::{Trajectory, TrajectoryPoint};
 pub use weights::{NetWeights, SkillWeights};
 
 /// Version of the run folder's layout and of every file in it.
-pub const FORMAT: u32 = 1;
+pub const FORMAT: u32 = 2;

@@ -11,7 +11,10 @@ pub const EVALUATIONS: &str = "evaluations.parquet";
 /// The arm whose rows are the planner's own tests: a bound, not a learner.
 pub const PLANNER: &str = "planner";
 
-/// What the `arm`, `skill` and `room` fields of rows index into. When read back, names come in the order in which the
+/// The variant of tests in the world and with the noise of training.
+pub const TRAINED: &str = "trained";
+
+/// What the `arm`, `skill`, `variant` and `room` fields of rows index into. When read back, names come in the order in which the
 /// rows first use them.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Names {
@@ -19,6 +22,8 @@ pub struct Names {
     pub arms: Vec<String>,
     /// Skills.
     pub skills: Vec<String>,
+    /// Circumstances of tests: [`TRAINED`], or an alteration's name.
+    pub variants: Vec<String>,
     /// Rooms in which tests start.
     pub rooms: Vec<String>,
 }
@@ -65,6 +70,8 @@ pub struct EvaluationRow {
     pub trials: u32,
     /// Primitive actions executed so far, in teaching and for child skills too.
     pub actions: u32,
+    /// Index into [`Names::variants`].
+    pub variant: u32,
     /// Index into [`Names::rooms`].
     pub room: u32,
     /// Test trials.
@@ -75,6 +82,8 @@ pub struct EvaluationRow {
     pub steps: u32,
     /// Sum of rewards of all test trials, undiscounted, in the config's units.
     pub reward: f64,
+    /// Sum of rewards of all test trials, each discounted from the start of its trial with the skill's own factor.
+    pub returned: f64,
     /// Steps with contact of all test trials.
     pub collisions: u32,
 }
@@ -89,9 +98,10 @@ const TRIAL_SCHEMA: &str = "message trials {
 const EVALUATION_SCHEMA: &str = "message evaluations {
     REQUIRED BYTE_ARRAY arm (STRING); REQUIRED INT32 point (INTEGER(32,false)); REQUIRED INT32 seed (INTEGER(32,false));
     REQUIRED BYTE_ARRAY skill (STRING); REQUIRED INT32 trials (INTEGER(32,false));
-    REQUIRED INT32 actions (INTEGER(32,false)); REQUIRED BYTE_ARRAY room (STRING);
+    REQUIRED INT32 actions (INTEGER(32,false)); REQUIRED BYTE_ARRAY variant (STRING); REQUIRED BYTE_ARRAY room (STRING);
     REQUIRED INT32 episodes (INTEGER(32,false)); REQUIRED INT32 successes (INTEGER(32,false));
-    REQUIRED INT32 steps (INTEGER(32,false)); REQUIRED DOUBLE reward; REQUIRED INT32 collisions (INTEGER(32,false));
+    REQUIRED INT32 steps (INTEGER(32,false)); REQUIRED DOUBLE reward; REQUIRED DOUBLE return;
+    REQUIRED INT32 collisions (INTEGER(32,false));
 }";
 
 /// The bytes of `trials.parquet`: the same for the same rows, which the caller has sorted.
@@ -130,11 +140,13 @@ pub fn write_evaluations(rows: &[EvaluationRow], names: &Names) -> Result<Vec<u8
             Column::text(rows.iter().map(|r| r.skill), &names.skills)?,
             Column::count(rows.iter().map(|r| r.trials)),
             Column::count(rows.iter().map(|r| r.actions)),
+            Column::text(rows.iter().map(|r| r.variant), &names.variants)?,
             Column::text(rows.iter().map(|r| r.room), &names.rooms)?,
             Column::count(rows.iter().map(|r| r.episodes)),
             Column::count(rows.iter().map(|r| r.successes)),
             Column::count(rows.iter().map(|r| r.steps)),
             Column::Double(rows.iter().map(|r| r.reward).collect()),
+            Column::Double(rows.iter().map(|r| r.returned).collect()),
             Column::count(rows.iter().map(|r| r.collisions)),
         ])
     });
@@ -170,7 +182,7 @@ fn trials_of(path: &Path) -> Result<(Names, Vec<TrialRow>), RecordError> {
         collisions: collisions[i],
         taught: taught[i],
     };
-    Ok((Names { arms, skills, rooms: Vec::new() }, (0..table.rows).map(row).collect()))
+    Ok((Names { arms, skills, ..Names::default() }, (0..table.rows).map(row).collect()))
 }
 
 /// Reads a table of tests.
@@ -185,10 +197,11 @@ fn evaluations_of(path: &Path) -> Result<(Names, Vec<EvaluationRow>), RecordErro
     let table = Table::read(path, EVALUATION_SCHEMA)?;
     let (arm, arms) = table.text(0)?;
     let (skill, skills) = table.text(3)?;
-    let (room, rooms) = table.text(6)?;
+    let (variant, variants) = table.text(6)?;
+    let (room, rooms) = table.text(7)?;
     let (point, seed, trials, actions) = (table.count(1)?, table.count(2)?, table.count(4)?, table.count(5)?);
-    let (episodes, successes, steps) = (table.count(7)?, table.count(8)?, table.count(9)?);
-    let (reward, collisions) = (table.double(10)?, table.count(11)?);
+    let (episodes, successes, steps) = (table.count(8)?, table.count(9)?, table.count(10)?);
+    let (reward, returned, collisions) = (table.double(11)?, table.double(12)?, table.count(13)?);
     let row = |i: usize| EvaluationRow {
         arm: arm[i],
         point: point[i],
@@ -196,12 +209,14 @@ fn evaluations_of(path: &Path) -> Result<(Names, Vec<EvaluationRow>), RecordErro
         skill: skill[i],
         trials: trials[i],
         actions: actions[i],
+        variant: variant[i],
         room: room[i],
         episodes: episodes[i],
         successes: successes[i],
         steps: steps[i],
         reward: reward[i],
+        returned: returned[i],
         collisions: collisions[i],
     };
-    Ok((Names { arms, skills, rooms }, (0..table.rows).map(row).collect()))
+    Ok((Names { arms, skills, variants, rooms }, (0..table.rows).map(row).collect()))
 }

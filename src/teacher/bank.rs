@@ -141,7 +141,7 @@ impl Teacher<'_> {
         let mut scratch = Scratch::default();
         let mut agent = Agent::zeroed();
         let mut lesson = vec![0; self.plan.lesson_stride as usize];
-        let origin = origin_of(&self.shared.floor, start);
+        let origin = origin_of(self.shared, start);
         let words = self.plan.record_words;
         let all = (1 << self.plan.children) - 1;
         let free = Options { applicable: all, choices: all, allowed: all, decision: 1 };
@@ -162,7 +162,7 @@ impl Teacher<'_> {
                 return Demonstration { start, lesson, returned: agent.returned };
             }
             let pose = Pose { x: agent.x, y: agent.y, heading: agent.heading };
-            let child = self.planner.choose(&self.shared.floor, origin, pose) as u32;
+            let child = self.planner.choose(self.shared, origin, pose) as u32;
             note(&mut scratch.record, child, free);
             write_record(&mut lesson, &scratch.record, words, 0, step);
             execute(&mut agent, self.shared, self.settings, self.plan.child[child as usize], &dice);

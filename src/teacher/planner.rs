@@ -3,10 +3,13 @@
 //! The grid is 5 in x 5 in x 15 degrees. Actuator noise enters by a three-point quadrature; between grid
 //! poses values are interpolated, over the poses that a robot can take.
 
-use crate::config::plan::{Action, Event, Noise, NoiseKind, Skill};
-use crate::robot::floor::Floor;
-use crate::robot::motion::{PASSED_DOOR, move_body};
-use crate::skill::reward::{NOWHERE, passed_door, room_of};
+use crate::config::plan::{Action, Child, Event, Noise, NoiseKind, Robot, Skill};
+use crate::learner::layout::{RAYS, RECORD_WORDS};
+use crate::learner::memory::Shared;
+use crate::math::functions::sin_cos;
+use crate::robot::motion::{BESIDE_LEFT, BESIDE_RIGHT, PASSED_DOOR, move_body};
+use crate::robot::sonar::{ranges, rays, reading};
+use crate::skill::reward::{NOWHERE, beside, passed_door, room_of};
 use crate::world::{Pose, World};
 use glam::Vec2;
 use rayon::prelude::*;
@@ -34,9 +37,26 @@ pub struct Planner {
     children: Vec<Action>,
     reward: [f32; Event::ALL.len()],
     ends: u32,
+    /// Least and greatest reading beside a wall, where the skill pays for it.
+    beside: Option<(u32, u32)>,
     discount: f32,
     backward_cost: f32,
     slips: [(f32, f32); 3],
+}
+
+/// What a planner plans with, besides the skill.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Terms {
+    /// Noise of the actuators.
+    pub noise: Noise,
+    /// What counts as beside a wall.
+    pub robot: Robot,
+    /// The teacher's own discount factor.
+    pub discount: f32,
+    /// Cost of backing up, in reward units: keeps it from backing up where turning serves as well.
+    pub backward_cost: f32,
+    /// Distance of grid points, inches.
+    pub pitch: f32,
 }
 
 /// What one action does from one pose under one slip of the actuators.
@@ -48,17 +68,9 @@ struct Outcome {
 }
 
 impl Planner {
-    /// Plans a skill on a grid of `pitch` inches. `discount` is the teacher's own; `backward_cost`, in reward
-    /// units, keeps it from backing up where turning serves as well.
-    pub fn new(
-        world: &World,
-        floor: &Floor,
-        skill: &Skill,
-        noise: &Noise,
-        discount: f32,
-        backward_cost: f32,
-        pitch: f32,
-    ) -> Self {
+    /// Plans a skill. For one over skills it plans over all actions: the bound of every tree below it.
+    pub fn new(world: &World, shared: &Shared, skill: &Skill, terms: &Terms) -> Self {
+        let Terms { noise, robot, discount, backward_cost, pitch } = *terms;
         let columns = (world.size.x / pitch) as usize + 1;
         let rows = (world.size.y / pitch) as usize + 1;
         let free = (0..columns * rows)
@@ -75,14 +87,15 @@ impl Planner {
             rows,
             free,
             values: Vec::new(),
-            children: skill.children.clone(),
+            children: actions_of(skill),
             reward: skill.reward,
             ends: skill.ends,
+            beside: pays_beside(skill).then_some((robot.beside_near as u32, robot.beside_far as u32)),
             discount,
             backward_cost,
-            slips: slips(noise),
+            slips: slips(&noise),
         };
-        planner.values = (0..origins).map(|origin| planner.solve(floor, origin as u32)).collect();
+        planner.values = (0..origins).map(|origin| planner.solve(shared, origin as u32)).collect();
         planner
     }
 
@@ -92,10 +105,10 @@ impl Planner {
     }
 
     /// Position in the skill's children of the best one at a pose, for a trial that began in room `origin`.
-    pub fn choose(&self, floor: &Floor, origin: u32, pose: Pose) -> usize {
+    pub fn choose(&self, shared: &Shared, origin: u32, pose: Pose) -> usize {
         let mut best = (0, f32::NEG_INFINITY);
         for (child, action) in self.children.iter().enumerate() {
-            let worth = self.worth(floor, origin, pose, *action);
+            let worth = self.worth(shared, origin, pose, *action);
             if worth > best.1 {
                 best = (child, worth);
             }
@@ -104,14 +117,14 @@ impl Planner {
     }
 
     /// Expected return of an action at a pose and of the best ones after it.
-    pub fn worth(&self, floor: &Floor, origin: u32, pose: Pose, action: Action) -> f32 {
+    pub fn worth(&self, shared: &Shared, origin: u32, pose: Pose, action: Action) -> f32 {
         let values = &self.values[self.origin_index(origin)];
         let cost = if action == Action::Backward { self.backward_cost } else { 0.0 };
         let expected: f32 = self
             .slips
             .iter()
             .map(|(slip, weight)| {
-                let outcome = self.outcome(floor, origin, pose, action, *slip);
+                let outcome = self.outcome(shared, origin, pose, action, *slip);
                 let after = if outcome.ended { 0.0 } else { self.interpolate(values, outcome.pose) };
                 weight * (outcome.reward + self.discount * after)
             })
@@ -119,20 +132,59 @@ impl Planner {
         expected - cost
     }
 
+    /// The words that stand in for a skill's nets (see [`crate::skill::consult`]): at every grid pose the best child
+    /// and its value times `scale`. A pose that no robot can take has those of the nearest one that it can.
+    pub fn table(&self, shared: &Shared, scale: f32) -> Vec<u32> {
+        let mut words =
+            vec![self.columns as u32, self.rows as u32, self.values.len() as u32, (1.0 / self.pitch).to_bits()];
+        for origin in 0..self.values.len() as u32 {
+            let entries: Vec<[u32; HEADINGS]> = (0..self.free.len())
+                .into_par_iter()
+                .map(|point| {
+                    let at = self.nearest_free(point);
+                    let (x, y) = ((at % self.columns) as f32 * self.pitch, (at / self.columns) as f32 * self.pitch);
+                    std::array::from_fn(|heading| {
+                        let pose = Pose { x, y, heading: heading as f32 * HEADING_STEP };
+                        let value = self.value(origin, pose) * scale;
+                        (value.to_bits() & 0xffff_fff8) | self.choose(shared, origin, pose) as u32
+                    })
+                })
+                .collect();
+            words.extend(entries.as_flattened());
+        }
+        words
+    }
+
+    fn nearest_free(&self, point: usize) -> usize {
+        let place = |point: usize| ((point % self.columns) as i64, (point / self.columns) as i64);
+        let (x, y) = place(point);
+        let distance = |other: &usize| {
+            let (ox, oy) = place(*other);
+            (ox - x) * (ox - x) + (oy - y) * (oy - y)
+        };
+        (0..self.free.len()).filter(|other| self.free[*other]).min_by_key(distance).unwrap_or(point)
+    }
+
     fn origin_index(&self, origin: u32) -> usize {
         if (origin as usize) < self.values.len() { origin as usize } else { 0 }
     }
 
-    fn outcome(&self, floor: &Floor, origin: u32, pose: Pose, action: Action, slip: f32) -> Outcome {
-        let moved = move_body(floor, pose.x, pose.y, pose.heading, action as u32, slip);
-        let events = moved.events | passed_door(&floor.plan, origin, moved.x, moved.y);
+    fn outcome(&self, shared: &Shared, origin: u32, pose: Pose, action: Action, slip: f32) -> Outcome {
+        let moved = move_body(&shared.floor, pose.x, pose.y, pose.heading, action as u32, slip);
+        let mut events = moved.events | passed_door(&shared.floor.plan, origin, moved.x, moved.y);
+        if let Some((near, far)) = self.beside
+            && action == Action::Forward
+        {
+            let record = look(shared, moved.x, moved.y, moved.heading);
+            events |= beside(&record, near, far, action as u32, events);
+        }
         let reward = (0..Event::ALL.len()).filter(|i| (events >> i) & 1 == 1).map(|i| self.reward[i]).sum();
         let pose = Pose { x: moved.x, y: moved.y, heading: moved.heading };
         Outcome { pose, reward, ended: events & self.ends != 0 }
     }
 
     /// Values of all grid poses for trials that began in room `origin`.
-    fn solve(&self, floor: &Floor, origin: u32) -> Vec<f32> {
+    fn solve(&self, shared: &Shared, origin: u32) -> Vec<f32> {
         let moves: Vec<Action> = self.children.iter().copied().filter(|a| a.travel() != 0.0).collect();
         let turns: Vec<Action> = self.children.iter().copied().filter(|a| a.turn() != 0.0).collect();
         let points: Vec<usize> = (0..self.free.len()).filter(|point| self.free[*point]).collect();
@@ -147,7 +199,7 @@ impl Planner {
                     let pose = Pose { x, y, heading: heading as f32 * HEADING_STEP };
                     for action in &moves {
                         for (slip, _) in self.slips {
-                            let outcome = self.outcome(floor, origin, pose, *action, slip);
+                            let outcome = self.outcome(shared, origin, pose, *action, slip);
                             blends.push(self.blend(&outcome));
                         }
                     }
@@ -289,8 +341,35 @@ fn slips(noise: &Noise) -> [(f32, f32); 3] {
     [(1.0 - reach, weight), (1.0, 1.0 - 2.0 * weight), (1.0 + reach, weight)]
 }
 
+/// The actions that a skill chooses among, or all where it chooses among skills.
+fn actions_of(skill: &Skill) -> Vec<Action> {
+    let action = |child: &Child| match child {
+        Child::Action(action) => Some(*action),
+        Child::Skill(_) => None,
+    };
+    let actions: Vec<Action> = skill.children.iter().filter_map(action).collect();
+    if skill.is_high() { Action::ALL.to_vec() } else { actions }
+}
+
+fn pays_beside(skill: &Skill) -> bool {
+    let paid = |event: Event| skill.reward[event as usize] != 0.0;
+    paid(Event::BesideRight) || paid(Event::BesideLeft) || skill.ends & (BESIDE_RIGHT | BESIDE_LEFT) != 0
+}
+
+/// The sonar's words of a record at a pose, without noise.
+fn look(shared: &Shared, x: f32, y: f32, heading: f32) -> [u32; RECORD_WORDS] {
+    let (sine, cosine) = sin_cos(heading);
+    let (ux, uy) = rays(cosine, sine);
+    let range = ranges(&shared.floor, &shared.atlas, x, y, &ux, &uy);
+    let mut record = [0; RECORD_WORDS];
+    for ray in 0..RAYS {
+        record[ray / 4] |= reading(range[ray], 1.0) << (8 * (ray % 4));
+    }
+    record
+}
+
 /// Room in which a trial that begins here begins.
-pub fn origin_of(floor: &Floor, pose: Pose) -> u32 {
-    let room = room_of(&floor.plan, pose.x, pose.y);
+pub fn origin_of(shared: &Shared, pose: Pose) -> u32 {
+    let room = room_of(&shared.floor.plan, pose.x, pose.y);
     if room == NOWHERE { 0 } else { room }
 }
