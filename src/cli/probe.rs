@@ -74,10 +74,10 @@ struct Reading {
 
 pub(super) fn probe(arguments: &Arguments) -> Result<(), Failure> {
     let plan = load(&arguments.config, &Overrides { set: arguments.set.clone(), seeds: None })?;
-    let pose = pose_of(&arguments.at, &plan.world)?;
+    let pose = pose_of(&arguments.at, plan.world())?;
     let actions = actions_of(&arguments.actions)?;
     let noise = if arguments.noise == Noisy::Off { SILENT } else { plan.arms[0].noise };
-    let shared = floor_only(&plan.world);
+    let shared = floor_only(plan.world());
     let mut backend = CpuBackend::new(1, None)?;
     let mut robot = robot_at(pose, &noise, plan.run_seed, arguments.seed);
     for action in std::iter::once(None).chain(actions.into_iter().map(Some)) {
@@ -86,7 +86,7 @@ pub(super) fn probe(arguments: &Arguments) -> Result<(), Failure> {
         }
         robot.events = 0;
         backend.step(&shared, std::slice::from_mut(&mut robot), 1)?;
-        let reading = reading_of(&robot, &plan.world);
+        let reading = reading_of(&robot, plan.world());
         if arguments.json {
             let line = serde_json::to_string(&reading).map_err(|error| Failure::Usage {
                 message: format!("the reading has no JSON form: {error}"),
