@@ -125,8 +125,7 @@ fn act(learner: &mut Learner<'_>, scratch: &mut Scratch, base: u32, lessons_base
         write_record(learner.lessons, &scratch.record, words, lesson, step);
         let agent = &mut learner.cursor.agent;
         commit(agent, root, child, found);
-        let action =
-            descend(agent, learner.shared, scratch, learner.settings, learner.nets, base, root, child, &dice);
+        let action = descend(agent, learner.shared, scratch, learner.settings, learner.nets, base, root, child, &dice);
         execute(agent, learner.shared, settings, action, &dice);
         learner.cursor.actions += 1;
     }

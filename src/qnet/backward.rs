@@ -20,7 +20,15 @@ pub struct Errors {
 
 /// Errors of a net whose output should rise by `delta`.
 #[inline(always)]
-pub fn errors(nets: &[f32], scratch: &Scratch, plan: &SkillPlan, net: u32, number: u32, child: u32, delta: f32) -> Errors {
+pub fn errors(
+    nets: &[f32],
+    scratch: &Scratch,
+    plan: &SkillPlan,
+    net: u32,
+    number: u32,
+    child: u32,
+    delta: f32,
+) -> Errors {
     let value = scratch.q[child as usize];
     let output = delta * (1.0 - value * value);
     let mut hidden = [0.0; LANES];
