@@ -14,7 +14,12 @@ use tempfile::TempDir;
 
 fn names() -> Names {
     let words = |list: &[&str]| list.iter().map(|word| word.to_string()).collect();
-    Names { arms: words(&["flat", "tree"]), skills: words(&["dock", "räume"]), rooms: words(&["A", "B"]) }
+    Names {
+        arms: words(&["flat", "tree"]),
+        skills: words(&["dock", "räume"]),
+        variants: words(&["trained", "moved"]),
+        rooms: words(&["A", "B"]),
+    }
 }
 
 fn trials(count: u32) -> Vec<TrialRow> {
@@ -42,11 +47,13 @@ fn evaluations(count: u32) -> Vec<EvaluationRow> {
         skill: i * 4 / count % 2,
         trials: i,
         actions: 3_000_000_000 + i,
+        variant: i * 8 / count % 2,
         room: i % 2,
         episodes: 100,
         successes: i % 101,
         steps: i * 30,
         reward: f64::from(i) / 3.0,
+        returned: f64::from(i) / -7.0,
         collisions: i % 9,
     };
     (0..count).map(row).collect()
@@ -71,7 +78,7 @@ fn tables_come_back_and_their_bytes_are_fixed() {
         let bytes = write_evaluations(&evaluations(count), &names()).unwrap();
         let (read, rows) = read_evaluations(&saved(&dir, &bytes)).unwrap();
         assert_eq!(rows, evaluations(count));
-        assert_eq!(read.rooms, names().rooms);
+        assert_eq!((read.rooms, read.variants), (names().rooms, names().variants));
     }
     let empty = write_trials(&[], &names()).unwrap();
     assert_eq!(read_trials(&saved(&dir, &empty)).unwrap().1, vec![]);
