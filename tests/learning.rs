@@ -552,7 +552,8 @@ fn returns_of_random_lessons_match_the_forward_view() {
         let lesson = Lesson { steps: taken, last: senses(&mut next), end };
 
         let nets: Vec<Net> = (0..6).map(|child| Net::of(&bench, child)).collect();
-        let values = |record: &[u32; BASE_WORDS]| nets.iter().map(|net| net.value(&inputs_of(record))).collect::<Vec<f64>>();
+        let values =
+            |record: &[u32; BASE_WORDS]| nets.iter().map(|net| net.value(&inputs_of(record))).collect::<Vec<f64>>();
         let all: Vec<Vec<f64>> = lesson.steps.iter().map(|step| values(&step.senses)).collect();
         let best = |q: &[f64]| q.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let mut peaks: Vec<f64> = all.iter().map(|q| best(q)).collect();
@@ -704,7 +705,7 @@ fn inverse_temperature_rises_linearly_and_stays() {
 
 // The state machine.
 
-/// A config of two skills whose learners need every phase, and little time.
+/// A config of two skills, one of them above the other, whose learners need every phase, and little time.
 fn small() -> Plan {
     let office = configs().join("worlds/office.toml");
     let text = format!(
@@ -735,7 +736,7 @@ fn small() -> Plan {
         trials = 6
         [skill.wander]
         inputs = ["sonar-far", "compass"]
-        children = ["turn+15", "turn-60", "move+12"]
+        children = ["turn+15", "dock", "move+12"]
         reward = {{ docked = 50, collision = -20 }}
         starts = {{ anywhere = 1.0 }}
         tests = "anywhere"

@@ -4,7 +4,7 @@ use skilltree::record::places::{read_places, write_places};
 use skilltree::record::tables::{read_evaluations, read_trials, write_evaluations, write_trials};
 use skilltree::record::weights::{read_weights, write_weights};
 use skilltree::record::{
-    EvaluationRow, FinishedRun, Manifest, Names, NetWeights, PlaceReading, Provenance, RecordError, RunFolder,
+    EvaluationRow, FORMAT, FinishedRun, Manifest, Names, NetWeights, PlaceReading, Provenance, RecordError, RunFolder,
     SkillWeights, State, TrialRow,
 };
 use std::collections::BTreeMap;
@@ -47,7 +47,7 @@ fn evaluations(count: u32) -> Vec<EvaluationRow> {
         skill: i * 4 / count % 2,
         trials: i,
         actions: 3_000_000_000 + i,
-        variant: i * 8 / count % 2,
+        variant: i.div_ceil(2) % 2,
         room: i % 2,
         episodes: 100,
         successes: i % 101,
@@ -369,7 +369,9 @@ fn a_finished_run_vouches_for_every_byte() {
         assert!(FinishedRun::read(&dir).is_err(), "cut to {length}");
     }
     let text = String::from_utf8(whole).unwrap();
-    fs::write(&path, text.replace("\"format\": 1", "\"format\": 2")).unwrap();
+    let format = |version: u32| format!("\"format\": {version}");
+    assert!(text.contains(&format(FORMAT)));
+    fs::write(&path, text.replace(&format(FORMAT), &format(FORMAT + 1))).unwrap();
     assert!(matches!(FinishedRun::read(&dir), Err(RecordError::Format { .. })));
     fs::write(&path, text.replace("skills/", "../skills/")).unwrap();
     assert!(FinishedRun::read(&dir).unwrap_err().to_string().contains("outside"));
