@@ -195,6 +195,7 @@ keys! {
     TAUGHT_REPLAYS = "learning.taught_replays", Some("3"), Whole(0, 1000), Ours, "taught lessons replayed after each trial";
     TAUGHT_ALWAYS = "learning.taught_always", Some("true"), Flag, Ours, "taught steps are learned whatever their action's probability";
     TIMEOUT_TERMINAL = "learning.timeout_terminal", Some("true"), Flag, Ours, "a trial cut at the step limit ends with value 0 (true), or with its last observation's value (false)";
+    MIRROR_REPLAYS = "learning.mirror_replays", Some("false"), Flag, Ours, "half of the replayed lessons are seen in a mirror: left and right exchanged";
     MASK_BLOCKED = "learning.mask_blocked", Some("true"), Flag, Ours, "an action that was just blocked is not available on the next step";
 
     SHARED_NET = "learning.shared_net", Some("false"), Flag, Ours, "one net with an output per child, instead of a net per child";

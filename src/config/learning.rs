@@ -80,6 +80,7 @@ pub(super) fn read(item: &Item<'_>, idle: &mut Idle) -> Result<Learning, ConfigE
         taught_replays: section.whole(&keys::TAUGHT_REPLAYS)?,
         taught_always: section.flag(&keys::TAUGHT_ALWAYS)?,
         timeout_terminal: section.flag(&keys::TIMEOUT_TERMINAL)?,
+        mirror_replays: section.flag(&keys::MIRROR_REPLAYS)?,
         mask_blocked: section.flag(&keys::MASK_BLOCKED)?,
         shared_net: section.flag(&keys::SHARED_NET)?,
         backup: match section.choice(&keys::BACKUP)? {

@@ -2,7 +2,7 @@
 
 use super::error::ConfigError;
 use super::inputs;
-use super::plan::{Action, Child, Event, Input, Skill};
+use super::plan::{Event, Input, Skill};
 use super::read::Item;
 
 /// The mirror image of `source`, which is the arm's skill of that number; `item` is where it is named.
@@ -27,13 +27,9 @@ pub(super) fn image(name: &str, (number, source): (usize, &Skill), item: &Item<'
             ends |= event(seen).bit();
         }
     }
-    let children = source.children.iter().map(|child| match child {
-        Child::Action(seen) => Child::Action(action(*seen)),
-        Child::Skill(skill) => Child::Skill(*skill),
-    });
     Ok(Skill {
         name: name.to_owned(),
-        children: children.collect(),
+        children: source.children.iter().map(|child| child.mirrored()).collect(),
         // A planned skill has no nets: its image is planned too.
         mirror: (!source.planned).then_some(number),
         reward,
@@ -42,16 +38,6 @@ pub(super) fn image(name: &str, (number, source): (usize, &Skill), item: &Item<'
         trials: 0,
         ..source.clone()
     })
-}
-
-fn action(seen: Action) -> Action {
-    match seen {
-        Action::TurnLeft15 => Action::TurnRight15,
-        Action::TurnRight15 => Action::TurnLeft15,
-        Action::TurnLeft60 => Action::TurnRight60,
-        Action::TurnRight60 => Action::TurnLeft60,
-        Action::Forward | Action::Backward => seen,
-    }
 }
 
 fn event(seen: Event) -> Event {

@@ -79,7 +79,7 @@ pub fn think(
     if plan.planned > 0 {
         consult(agent, shared, scratch, plan);
     } else {
-        encode(shared, scratch, plan);
+        encode(shared, scratch, plan, plan.mirrored == 1);
         forward(nets, scratch, plan, base);
     }
 }
