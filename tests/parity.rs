@@ -164,8 +164,7 @@ fn no_quantum_takes_more_turns_than_the_governor_counts() {
     gpu.replace(counting(ADVANCE));
     let stop = Stop { skill: u32::MAX, trial: u32::MAX };
     let mut most = |cohort: &Cohort| {
-        let cohort = Cohort { cursors: cohort.cursors.clone(), ..cohort.clone() };
-        gpu.load(cohort).expect("it fits");
+        gpu.load(cohort.clone()).expect("it fits");
         while !gpu.advance(stop).expect("it runs").iter().all(|cursor| stop.holds(cursor)) {}
         gpu.advance(stop).expect("it runs").iter().map(|cursor| cursor.updates).max().expect("learners")
     };
