@@ -3,6 +3,8 @@
 
 mod backups;
 mod bench;
+mod mirrors;
+mod nets;
 #[path = "../oracle/mod.rs"]
 #[expect(dead_code, reason = "other tests use the rest of it")]
 mod oracle;
