@@ -9,3 +9,4 @@ mod nets;
 #[expect(dead_code, reason = "other tests use the rest of it")]
 mod oracle;
 mod persistence;
+mod senses;
