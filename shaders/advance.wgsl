@@ -64,64 +64,47 @@ fn start(s: u32) {
         let words = draw(stream, 0u);
         let region = start_region(skill, words.x);
         let pose = start_pose(skills[skill].start_offset[region], skills[skill].start_count[region], words);
-        cursor.x = pose.x;
-        cursor.y = pose.y;
-        cursor.heading = pose.heading;
-        cursor.bumpers = 0u;
-        cursor.masked = NO_ACTION;
-        cursor.origin = room_of(pose.x, pose.y);
-        cursor.step = 0u;
-        cursor.reward = 0.0f;
-        cursor.collisions = 0u;
+        place(pose);
         cursor.phase = PHASE_ACT;
     }
 }
 
 fn act(lane: u32, s: u32, base: u32) {
-    let skill = cursor.skill;
-    let terms = noise_of(s);
-    let key = vec2<u32>(settings[s].run_seed, settings[s].learner_seed);
-    var stream = Stream(key, skill, cursor.trial, cursor.step, PURPOSE_STEP);
+    let root = cursor.skill;
+    let words = skills[root].record_words;
     let slot = cursor.remembered % settings[s].memory;
-    let lesson = lessons_base + skills[skill].memory_offset + slot * skills[skill].lesson_stride;
+    let lesson = lessons_base + skills[root].memory_offset + slot * skills[root].lesson_stride;
+    let step = agent.step;
+    let key = vec2<u32>(settings[s].run_seed, settings[s].learner_seed);
+    let stream = Stream(key, root, cursor.trial, step, PURPOSE_STEP);
     roll(lane, stream);
-    let x = cursor.x;
-    let y = cursor.y;
-    let heading = cursor.heading;
-    observe(lane, x, y, heading, cursor.bumpers, terms);
-    encode(lane, skill);
-    forward(lane, skill, base);
-    let outlook = weigh(lane, skills[skill].children, cursor.masked, sharpness(s, cursor.trial));
-    let child = pick(outlook, dice[DICE_CHOICE].x);
-    let slip = terms.actuator * noise(terms.kind, dice[DICE_ACTUATOR].x, dice[DICE_ACTUATOR].y) + 1.0f;
-    let moved = move_body(lane, x, y, heading, skills[skill].action[child], slip);
-    let events = moved.events | passed_door(cursor.origin, moved.x, moved.y);
-    let reward = reward_of(s, events);
-    note(lane, child, cursor.masked, events, reward);
-    write_record(lane, lesson, cursor.step);
-    let hit = (events & COLLISION) == COLLISION;
-    cursor.x = moved.x;
-    cursor.y = moved.y;
-    cursor.heading = moved.heading;
-    cursor.bumpers = moved.bumpers;
-    cursor.masked = select(NO_ACTION, child, hit && settings[s].mask_blocked == 1u);
-    cursor.step += 1u;
-    cursor.actions += 1u;
-    cursor.reward = cursor.reward + reward;
-    cursor.collisions += u32(hit);
-    let achieved = (events & skills[skill].ends) != 0u;
-    if achieved || cursor.step >= settings[s].max_steps {
+    sense(lane, s);
+    if step > 0u {
+        write_outcome(lane, words, lesson, step - 1u, agent.events, agent.earned);
+    }
+    let achieved = (agent.events & skills[root].ends) != 0u;
+    watch(lane, base, root);
+    think(lane, base, root);
+    let persist = settings[s].persist_training == 1u;
+    let found = options(root, persist);
+    if achieved || step >= settings[s].max_steps {
         let end = select(CUT, ENDED, achieved);
-        stream.step = cursor.step;
-        roll(lane, stream);
-        observe(lane, moved.x, moved.y, moved.heading, moved.bumpers, terms);
-        note(lane, NO_ACTION, cursor.masked, 0u, 0.0f);
-        write_record(lane, lesson, cursor.step);
-        write_header(lane, lesson, cursor.step, end, cursor.reward, cursor.collisions);
-        write_row(lane, cursor.trial, cursor.step, cursor.reward, end, cursor.collisions, 0u);
+        note(lane, NO_CHILD, found);
+        write_record(lane, words, lesson, step);
+        write_header(lane, lesson, step, end, agent.reward, agent.collisions);
+        write_row(lane, cursor.trial, step, agent.reward, end, agent.collisions, 0u);
         cursor.remembered += 1u;
         cursor.replay = 0u;
         cursor.phase = PHASE_REPLAY;
+    } else {
+        let heat = sharpness(s, cursor.trial);
+        let child = choose(lane, s, skills[root].children, found.allowed, heat, false, dice[DICE_CHOICE].x);
+        note(lane, child, found);
+        write_record(lane, words, lesson, step);
+        commit(root, child, found);
+        let action = descend(lane, base, root, child);
+        execute(lane, s, action);
+        cursor.actions += 1u;
     }
 }
 
@@ -153,6 +136,8 @@ fn replay(lane: u32, s: u32, base: u32) {
 fn advance(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     let learner = dispatch.first + group.x;
     cursor = cursors[learner];
+    agent = cursor.agent;
+    settings_base = learner * dispatch.skills;
     rows_base = learner * dispatch.rows_stride;
     lessons_base = learner * dispatch.lessons_stride;
     let base = learner * dispatch.nets_stride;
@@ -160,7 +145,7 @@ fn advance(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_in
         if stopped() {
             break;
         }
-        let s = learner * dispatch.skills + cursor.skill;
+        let s = settings_base + cursor.skill;
         if cursor.phase == PHASE_TEACH {
             teach(lane, s, base);
         } else if cursor.phase == PHASE_START {
@@ -171,6 +156,7 @@ fn advance(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_in
             replay(lane, s, base);
         }
     }
+    cursor.agent = agent;
     if lane == 0u {
         cursors[learner] = cursor;
     }

@@ -22,16 +22,8 @@ fn begin(s: u32, number: u32) {
     let key = vec2<u32>(settings[s].run_seed, settings[s].learner_seed);
     let stream = Stream(key, dispatch.test_skill, number, 0u, PURPOSE_TEST_START);
     let pose = start_pose(skills[skill].tests_offset, skills[skill].tests_count, draw(stream, 0u));
-    episode.x = pose.x;
-    episode.y = pose.y;
-    episode.heading = pose.heading;
-    episode.bumpers = 0u;
-    episode.step = 0u;
-    episode.masked = NO_ACTION;
-    episode.origin = room_of(pose.x, pose.y);
+    place(pose);
     episode.state = STATE_RUNNING;
-    episode.reward = 0.0f;
-    episode.collisions = 0u;
     episode.start_x = pose.x;
     episode.start_y = pose.y;
 }
@@ -43,9 +35,10 @@ fn evaluate(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_i
     // Results stand by the place of the learner in this dispatch: a test is read back part by part.
     let slot = group.x * dispatch.episodes + number;
     episode = episodes[slot];
-    let skill = dispatch.test_skill;
-    let s = learner * dispatch.skills + skill;
-    let terms = noise_of(s);
+    agent = episode.agent;
+    settings_base = learner * dispatch.skills;
+    let root = dispatch.test_skill;
+    let s = settings_base + root;
     let base = learner * dispatch.nets_stride;
     if episode.state == STATE_FRESH {
         begin(s, number);
@@ -55,30 +48,24 @@ fn evaluate(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_i
             break;
         }
         let key = vec2<u32>(settings[s].run_seed, settings[s].learner_seed);
-        let stream = Stream(key, skill | (dispatch.test_number << 8u), number, episode.step, PURPOSE_TEST);
+        let stream = Stream(key, root | (dispatch.test_number << 8u), number, agent.step, PURPOSE_TEST);
         roll(lane, stream);
-        observe(lane, episode.x, episode.y, episode.heading, episode.bumpers, terms);
-        encode(lane, skill);
-        forward(lane, skill, base);
-        let outlook = weigh(lane, skills[skill].children, episode.masked, 1.0f);
-        let child = outlook.greedy;
-        let slip = terms.actuator * noise(terms.kind, dice[DICE_ACTUATOR].x, dice[DICE_ACTUATOR].y) + 1.0f;
-        let action = skills[skill].action[child];
-        let moved = move_body(lane, episode.x, episode.y, episode.heading, action, slip);
-        let events = moved.events | passed_door(episode.origin, moved.x, moved.y);
-        let hit = (events & COLLISION) == COLLISION;
-        episode.x = moved.x;
-        episode.y = moved.y;
-        episode.heading = moved.heading;
-        episode.bumpers = moved.bumpers;
-        episode.masked = select(NO_ACTION, child, hit && settings[s].mask_blocked == 1u);
-        episode.step += 1u;
-        episode.reward = episode.reward + reward_of(s, events);
-        episode.collisions += u32(hit);
-        let achieved = (events & skills[skill].ends) != 0u;
-        let cut = select(STATE_RUNNING, STATE_CUT, episode.step >= settings[s].max_steps);
-        episode.state = select(cut, STATE_ACHIEVED, achieved);
+        sense(lane, s);
+        let achieved = (agent.events & skills[root].ends) != 0u;
+        if achieved || agent.step >= settings[s].max_steps {
+            episode.state = select(STATE_CUT, STATE_ACHIEVED, achieved);
+        } else {
+            watch(lane, base, root);
+            think(lane, base, root);
+            let persist = settings[s].persist_tests == 1u;
+            let found = options(root, persist);
+            let child = choose(lane, s, skills[root].children, found.allowed, 1.0f, true, dice[DICE_CHOICE].x);
+            commit(root, child, found);
+            let action = descend(lane, base, root, child);
+            execute(lane, s, action);
+        }
     }
+    episode.agent = agent;
     if lane == 0u {
         episodes[slot] = episode;
     }

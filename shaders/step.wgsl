@@ -29,7 +29,7 @@ fn step(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
         robot.step += 1u;
     }
     if lane == 0u {
-        for (var word = 0u; word < RECORD_WORDS; word++) {
+        for (var word = 0u; word < BASE_WORDS; word++) {
             robot.record[word] = record[word];
         }
         robots[number] = robot;

@@ -38,7 +38,8 @@ fn teach(learner: &mut Learner<'_>, scratch: &mut Scratch, base: u32) {
         if finished {
             let number = begun % settings.lessons;
             let lesson = taught_lesson(learner, number);
-            begin_replay(learner, lesson, 1);
+            // Every other pass.
+            begin_replay(learner, lesson, 1, (begun / settings.lessons) & 1);
             if begun < settings.lessons {
                 let steps = lesson_word(learner, 0);
                 let end = lesson_word(learner, 1);
@@ -150,13 +151,15 @@ fn replay(learner: &mut Learner<'_>, scratch: &mut Scratch, base: u32) {
                 step: begun,
                 purpose: Purpose::Replay as u32,
             };
-            let word = draw(stream, 0)[0];
+            let words = draw(stream, 0);
+            let word = words[0];
+            let mirrored = words[1] & 1;
             if begun < taught {
                 let lesson = taught_lesson(learner, below(word, settings.lessons));
-                begin_replay(learner, lesson, 1);
+                begin_replay(learner, lesson, 1, mirrored);
             } else {
                 let lesson = recent_lesson(learner, word);
-                begin_replay(learner, lesson, 0);
+                begin_replay(learner, lesson, 0, mirrored);
             }
         }
         replay_step(learner, scratch, base);

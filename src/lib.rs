@@ -29,7 +29,7 @@
 //! |---|---|
 //! | what the user wrote, checked | [`config`] |
 //! | the floor plan | [`world`] |
-//! | kernels and their memory | [`math`], [`robot`] (simulate), [`skill`] (decide), [`qnet`] (approximate), [`lesson`] (learn), [`mod@advance`], [`mod@evaluate`], [`mod@step`], [`learner`] |
+//! | kernels and their memory | [`math`], [`robot`] (simulate), [`qnet`] (approximate), [`skill`] (decide), [`lesson`] (learn), [`mod@advance`], [`mod@evaluate`], [`mod@step`], [`learner`] |
 //! | who demonstrates | [`teacher`] |
 //! | who executes the kernels | [`backend`] |
 //! | run folders | [`record`] |

@@ -2,7 +2,7 @@
 //!
 //! For `probe`, benchmarks and callers that decide for themselves. Twin: `shaders/step.wgsl`.
 
-use crate::learner::layout::{Dispatch, Noise, RECORD_WORDS, Robot};
+use crate::learner::layout::{BASE_WORDS, Dispatch, Noise, Robot};
 use crate::learner::memory::{Scratch, Shared};
 use crate::math::rng::{Purpose, Stream, noise, roll};
 use crate::robot::motion::{NO_ACTION, move_body};
@@ -40,7 +40,7 @@ pub fn step(robot: &mut Robot, shared: &Shared, dispatch: &Dispatch) {
         observe(shared, &mut scratch, &dice, robot.x, robot.y, robot.heading, robot.bumpers, terms);
         robot.step += 1;
     }
-    for word in 0..RECORD_WORDS {
+    for word in 0..BASE_WORDS {
         robot.record[word] = scratch.record[word];
     }
 }

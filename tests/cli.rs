@@ -124,7 +124,7 @@ fn config_mistakes_name_their_line() {
         ("infinite", edited("quick.toml", "rate         = 0.0015", "rate         = inf").into(), &["infinite.toml:", "finite"]),
         ("huge", edited("quick.toml", "seed  = 1993", "seed  = 99999999999999999999").into(), &["huge.toml:", "too large"]),
         ("range", edited("quick.toml", "gamma        = 0.9", "gamma        = 1.1").into(), &["range.toml:", "between 0 and 1"]),
-        ("zero", edited("quick.toml", "trials    = 150", "trials    = 0").into(), &["zero.toml:", "trials"]),
+        ("under", edited("quick.toml", "trials    = 150", "trials    = -1").into(), &["under.toml:", "trials"]),
         ("negative", edited("quick.toml", "sonar    = 0.10", "sonar    = -0.10").into(), &["negative.toml:", "sonar"]),
         ("date", edited("quick.toml", "seed  = 1993", "seed  = 1993-01-01").into(), &["date.toml:", "date"]),
         ("unknown-section", shipped("quick.toml").replace("[evaluate]", "[evaluat]").into(), &["unknown-section.toml:", "did you mean `evaluate`?"]),
@@ -344,7 +344,8 @@ fn a_damaged_part_stops_the_run_and_says_which() {
     let desk = Desk::new();
     let out = desk.path().join("run");
     let plan = plan();
-    let mut folder = skilltree::record::RunFolder::open(&out, &plan.resolved, &plan.world_text).unwrap();
+    let worlds = [("world.toml", plan.worlds[0].text.as_str())];
+    let mut folder = skilltree::record::RunFolder::open(&out, &plan.resolved, &worlds).unwrap();
     folder.commit_part("arm0-seed0_arm0-seed0", b"not the words of a learner").unwrap();
     drop(folder);
     let part = out.join("parts/arm0-seed0_arm0-seed0");
@@ -384,6 +385,27 @@ fn plan() -> skilltree::config::plan::Plan {
 /// All that two runs of the same experiment have in common, in whatever way they were carried out.
 fn results(tree: &BTreeMap<String, Vec<u8>>) -> BTreeMap<&String, &Vec<u8>> {
     tree.iter().filter(|(name, _)| *name != "manifest.json" && *name != "report.html").collect()
+}
+
+#[test]
+fn every_world_that_a_config_names_is_kept_with_the_run() {
+    let desk = Desk::new();
+    let out = desk.path().join("run");
+    let more = ["--seeds", "0..1", "--set", "arms=['taught-adam']"];
+    let other = ["--set", "arm.taught-sgd.world=worlds/office-easy.toml"];
+    let output = tiny(&out, &[&more[..], &other].concat()).output().unwrap();
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && message.contains("world:    small, office-easy\n"), "{message}");
+    let kept = tree(&out);
+    assert!(kept["worlds/office-easy.toml"] == shipped("worlds/office-easy.toml").into_bytes());
+    let manifest: Value = serde_json::from_slice(&kept["manifest.json"]).unwrap();
+    assert!(manifest["files"]["worlds/office-easy.toml"].is_object());
+    // The run folder is all that it takes to do the same again.
+    let output = desk.give(&["run", "run/config.toml", "--backend", "cpu", "--out", "again"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(results(&tree(&desk.path().join("again"))) == results(&kept));
+    fs::remove_file(out.join("worlds/office-easy.toml")).unwrap();
+    desk.refuses(&["report", "run"], 1, &["office-easy.toml", "missing"]);
 }
 
 #[test]

@@ -162,8 +162,10 @@ fn places_come_back_and_extra_keys_are_allowed() {
     }
 }
 
+const WORLDS: [(&str, &str); 2] = [("world.toml", "size = [1, 2]\n"), ("worlds/easy.toml", "size = [3, 4]\n")];
+
 fn open(dir: &Path) -> Result<RunFolder, RecordError> {
-    RunFolder::open(dir, "seeds = 7\n", "size = [1, 2]\n")
+    RunFolder::open(dir, "seeds = 7\n", &WORLDS)
 }
 
 fn results() -> Vec<(String, Vec<u8>)> {
@@ -188,7 +190,7 @@ fn a_run_goes_from_fresh_to_complete() {
     assert!(matches!(FinishedRun::read(&dir), Err(RecordError::Unfinished { .. })));
     let provenance = Provenance { version: "0.1.0".into(), seeds: vec![0, 1], ..Provenance::default() };
     let manifest = run.finish(results(), provenance).unwrap();
-    assert_eq!(manifest.files.len(), 4);
+    assert_eq!(manifest.files.len(), 5);
     assert!(!dir.join("parts").exists());
     let finished = FinishedRun::read(&dir).unwrap();
     assert_eq!((finished.manifest(), finished.config()), (&manifest, "seeds = 7\n"));
@@ -209,16 +211,26 @@ fn nothing_of_others_is_overwritten() {
     let held = open(&dir).unwrap();
     assert!(matches!(open(&dir), Err(RecordError::Busy { .. })));
     drop(held);
-    let other = RunFolder::open(&dir, "seeds = 8\n", "size = [1, 2]\n");
-    assert!(matches!(other, Err(RecordError::OtherExperiment { file: "config.toml", .. })));
-    let other = RunFolder::open(&dir, "seeds = 7\n", "size = [2, 2]\n");
-    assert!(matches!(other, Err(RecordError::OtherExperiment { file: "world.toml", .. })));
+    let other = RunFolder::open(&dir, "seeds = 8\n", &WORLDS);
+    assert!(matches!(other, Err(RecordError::OtherExperiment { file, .. }) if file == "config.toml"));
+    for number in 0..WORLDS.len() {
+        let mut worlds = WORLDS;
+        worlds[number].1 = "size = [2, 2]\n";
+        let other = RunFolder::open(&dir, "seeds = 7\n", &worlds);
+        assert!(matches!(other, Err(RecordError::OtherExperiment { file, .. }) if file == WORLDS[number].0));
+    }
+    let (main, easy) = (WORLDS[0], WORLDS[1]);
+    for name in ["../x.toml", "/x", "config.toml", "manifest.json", "parts/x", ".hidden", "a b", "world.toml"] {
+        let wrong = RunFolder::open(&dir, "seeds = 7\n", &[main, (name, "")]);
+        assert!(matches!(wrong, Err(RecordError::Invalid { .. })), "{name}");
+    }
+    assert!(matches!(RunFolder::open(&dir, "seeds = 7\n", &[easy]), Err(RecordError::Invalid { .. })));
     let mut run = open(&dir).unwrap();
     for name in ["../x", "a/b", ".hidden", "", "a b"] {
         assert!(run.commit_part(name, b"").is_err(), "{name}");
     }
     drop(run);
-    for name in ["../x", "/x", "config.toml", "manifest.json", "parts/x", "a/../../x"] {
+    for name in ["../x", "/x", "config.toml", "manifest.json", "parts/x", "a/../../x", "worlds/easy.toml"] {
         let run = open(&dir).unwrap();
         assert!(run.finish([(name.to_owned(), vec![])], Provenance::default()).is_err(), "{name}");
     }
@@ -251,14 +263,20 @@ fn a_killed_run_is_resumed_from_every_state() {
     let parent = TempDir::new().unwrap();
     let dir = parent.path().join("run");
     let finish = |run: RunFolder| run.finish(results(), Provenance::default()).unwrap();
-    for removed in [&["world.toml"][..], &["world.toml", "config.toml"], &["world.toml", "config.toml", ".skilltree"]] {
+    let written = [".skilltree", "config.toml", "world.toml", "worlds", "worlds/easy.toml"];
+    for kept in 0..written.len() {
         drop(open(&dir).unwrap());
-        for name in removed {
-            fs::remove_file(dir.join(name)).unwrap();
+        for name in written[kept..].iter().rev() {
+            let path = dir.join(name);
+            if path.is_dir() { fs::remove_dir(path).unwrap() } else { fs::remove_file(path).unwrap() }
         }
-        fs::write(dir.join(".config.toml.17.skilltree-tmp"), "see").unwrap();
+        let leftovers = [".config.toml.17.skilltree-tmp", "worlds/.easy.toml.17.skilltree-tmp"];
+        for name in &leftovers[..if kept > 3 { 2 } else { 1 }] {
+            fs::write(dir.join(name), "see").unwrap();
+        }
         assert_eq!(open(&dir).unwrap().state(), State::Fresh);
-        assert!(!dir.join(".config.toml.17.skilltree-tmp").exists());
+        assert!(leftovers.iter().all(|name| !dir.join(name).exists()));
+        assert!(written.iter().all(|name| dir.join(name).exists()));
     }
     let mut run = open(&dir).unwrap();
     run.commit_part("a", b"part").unwrap();

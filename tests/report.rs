@@ -194,7 +194,7 @@ fn run_folder(dir: &Path, seeds: u32) {
         ("evaluations.parquet".to_owned(), write_evaluations(&rows, &names).unwrap()),
         ("places.json".to_owned(), write_places(&readings(&world)).unwrap()),
     ];
-    RunFolder::open(dir, config, OFFICE).unwrap().finish(files, provenance).unwrap();
+    RunFolder::open(dir, config, &[("world.toml", OFFICE)]).unwrap().finish(files, provenance).unwrap();
 }
 
 /// Lies in the build folder, so that one can look at it after the test.
@@ -301,14 +301,14 @@ fn runs_that_cannot_be_reported_say_why() {
     let dir = scratch("report-wrong");
     let missing = write(&dir).unwrap_err().to_string();
     assert!(missing.contains("report-wrong"), "{missing}");
-    drop(RunFolder::open(&dir, "", OFFICE).unwrap());
+    drop(RunFolder::open(&dir, "", &[("world.toml", OFFICE)]).unwrap());
     assert!(matches!(write(&dir), Err(ReportError::Record(RecordError::Unfinished { .. }))));
-    let run = RunFolder::open(&dir, "", OFFICE).unwrap();
+    let run = RunFolder::open(&dir, "", &[("world.toml", OFFICE)]).unwrap();
     run.finish([], Provenance::default()).unwrap();
     write(&dir).unwrap();
     assert!(fs::read_to_string(dir.join("report.html")).unwrap().contains("The run holds no tests"));
     let dir = scratch("report-worldless");
-    RunFolder::open(&dir, "", "size = 3\n").unwrap().finish([], Provenance::default()).unwrap();
+    RunFolder::open(&dir, "", &[("world.toml", "size = 3\n")]).unwrap().finish([], Provenance::default()).unwrap();
     let refused = write(&dir).unwrap_err().to_string();
     assert!(refused.contains("world.toml") && refused.contains("size"), "{refused}");
     assert!(raster::png("not a drawing").is_err());

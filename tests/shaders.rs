@@ -143,7 +143,7 @@ fn breach(expression: &Expression, is_float: impl Fn(Handle<Expression>) -> bool
             let allowed = if is_float(*arg) {
                 matches!(fun, M::Abs | M::Floor | M::Round)
             } else {
-                matches!(fun, M::Abs | M::Min | M::Max)
+                matches!(fun, M::Abs | M::Min | M::Max | M::CountTrailingZeros)
             };
             (!allowed).then(|| format!("{fun:?}"))
         }

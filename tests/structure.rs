@@ -128,7 +128,7 @@ const DIRECTION: &[(&str, &[&str])] = &[
     ("math", &["learner"]),
     ("learner", &["config", "world", "math", "robot", "skill", "qnet"]),
     ("robot", &["learner", "math"]),
-    ("skill", &["learner", "math", "robot", "world"]),
+    ("skill", &["learner", "math", "robot", "qnet", "world"]),
     ("qnet", &["learner", "math"]),
     ("lesson", &["learner", "math", "skill", "qnet"]),
     ("advance", KERNELS),

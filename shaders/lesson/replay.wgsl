@@ -3,6 +3,12 @@
 // From the last step to the first: u_t = r_t + gamma [(1 - lambda) max_k Q(x_{t+1}, k) + lambda u_{t+1}], the
 // bracket 0 at a goal. A step whose action the current policy would hardly take is not learned, and cuts
 // the chain: there max Q stands for u. The form is recalled from Lin's other papers, so it is our choice.
+//
+// A skill over skills may learn at its decisions only: between them rewards are summed with their discount, and
+// lambda mixes at decisions.
+
+const BACKUP_STEPS: u32 = 0u;
+const BACKUP_DECISIONS: u32 = 2u;
 
 fn taught_lesson(s: u32, number: u32) -> u32 {
     let skill = cursor.skill;
@@ -46,12 +52,24 @@ fn begin_replay(s: u32, lesson: u32, taught: u32) {
 }
 
 fn load_record(lane: u32, step: u32) {
-    let offset = LESSON_HEADER + step * RECORD_WORDS;
+    let words = skills[cursor.skill].record_words;
+    let offset = LESSON_HEADER + step * words;
     workgroupBarrier();
-    if lane < RECORD_WORDS {
+    if lane < words {
         record[lane] = lesson_word(offset + lane);
     }
     workgroupBarrier();
+}
+
+fn bounded(aim: f32, limit: f32) -> f32 {
+    let low = select(-limit, aim, aim > -limit);
+    return select(limit, low, low < limit);
+}
+
+fn inner_drawn(s: u32, step: u32) -> bool {
+    let key = vec2<u32>(settings[s].run_seed, settings[s].learner_seed);
+    let stream = Stream(key, cursor.skill, cursor.trial, cursor.replay, PURPOSE_INNER);
+    return unit(draw(stream, step).x) < settings[s].inner_share;
 }
 
 fn replay_step(lane: u32, s: u32, base: u32) {
@@ -59,38 +77,47 @@ fn replay_step(lane: u32, s: u32, base: u32) {
     let open = cursor.replay_open == 1u;
     let step = select(cursor.replay_left - 1u, cursor.replay_left, open);
     load_record(lane, step);
-    encode(lane, skill);
-    forward(lane, skill, base);
     let child = record[8] & 0xffu;
-    let masked = (record[8] >> 8u) & 0xffu;
-    let outlook = weigh(lane, skills[skill].children, masked, sharpness(s, cursor.trial));
-    if open {
-        cursor.replay_open = 0u;
-        cursor.next_best = outlook.best;
-        cursor.next_return = outlook.best;
-    } else {
-        let reward = bitcast<f32>(record[9]) * settings[s].value_scale;
-        let future = (1.0f - settings[s].lambda) * cursor.next_best + settings[s].lambda * cursor.next_return;
-        let aim = reward + settings[s].gamma * future;
-        let low = select(-settings[s].target_limit, aim, aim > -settings[s].target_limit);
-        let goal = select(settings[s].target_limit, low, low < settings[s].target_limit);
-        let taught = settings[s].taught_always == 1u && cursor.replay_taught == 1u;
-        let policy = taught || odds[child] > settings[s].policy_threshold * outlook.total;
-        let delta = goal - q[child];
-        // Of all children: one that is never chosen again would not be found out otherwise.
-        var sound = is_number(delta);
-        for (var other = 0u; other < skills[skill].children; other++) {
-            sound = sound && is_number(q[other]);
-        }
-        if !sound {
-            cursor.phase = PHASE_FAILED;
-        } else if policy {
-            let pace = learning_rate(s, cursor.trial);
-            backward(lane, skill, s, base, child, delta, pace);
-            cursor.updates += 1u;
-        }
-        cursor.next_best = outlook.best;
-        cursor.next_return = select(outlook.best, goal, policy);
+    let choices = (record[8] >> 16u) & 0xffu;
+    let allowed = select((record[8] >> 8u) & 0xffu, choices, settings[s].backup == BACKUP_STEPS);
+    let reward = bitcast<f32>(record[9]) * settings[s].value_scale;
+    let future = (1.0f - settings[s].lambda) * cursor.next_best + settings[s].lambda * cursor.next_return;
+    let aim = bounded(reward + settings[s].gamma * future, settings[s].target_limit);
+    let inner = settings[s].backup == BACKUP_DECISIONS && (record[8] >> 31u) == 0u && !open;
+    if inner && !inner_drawn(s, step) {
+        cursor.next_best = aim;
+        cursor.next_return = aim;
         cursor.replay_left = step;
+    } else {
+        encode(lane, skill);
+        forward(lane, skill, base);
+        let outlook = weigh(lane, skills[skill].children, allowed, sharpness(s, cursor.trial));
+        if open {
+            cursor.replay_open = 0u;
+            cursor.next_best = outlook.best;
+            cursor.next_return = outlook.best;
+        } else {
+            let taught = settings[s].taught_always == 1u && cursor.replay_taught == 1u;
+            let policy = taught || odds[child] > settings[s].policy_threshold * outlook.total;
+            let stretched = outlook.best + settings[s].advantage_scale * (aim - outlook.best);
+            let plain = settings[s].advantage_scale == 1.0f;
+            let goal = select(bounded(stretched, settings[s].target_limit), aim, plain);
+            let delta = goal - q[child];
+            // Of all children: one that is never chosen again would not be found out otherwise.
+            var sound = is_number(delta);
+            for (var other = 0u; other < skills[skill].children; other++) {
+                sound = sound && is_number(q[other]);
+            }
+            if !sound {
+                cursor.phase = PHASE_FAILED;
+            } else if policy {
+                let pace = learning_rate(s, cursor.trial);
+                backward(lane, skill, s, base, child, delta, pace);
+                cursor.updates += 1u;
+            }
+            cursor.next_best = select(outlook.best, aim, inner);
+            cursor.next_return = select(outlook.best, aim, policy || inner);
+            cursor.replay_left = step;
+        }
     }
 }

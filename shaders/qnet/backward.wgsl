@@ -7,24 +7,27 @@ struct Errors {
     hidden: f32,
 }
 
-fn errors(lane: u32, skill: u32, net: u32, child: u32, delta: f32) -> Errors {
+fn errors(lane: u32, skill: u32, net: u32, number: u32, child: u32, delta: f32) -> Errors {
     let value = q[child];
     let output = delta * (1.0f - value * value);
-    let activation = hidden[child][lane];
-    let weight = nets[net + (skills[skill].inputs + 1u) * LANES + lane];
+    let activation = hidden[number][lane];
+    let weight = nets[net + (skills[skill].inputs + 1u + child - number) * LANES + lane];
     return Errors(output, output * weight * (1.0f - activation * activation));
 }
 
-fn gradient(lane: u32, count: u32, child: u32, row: u32, errors: Errors) -> f32 {
+fn gradient(lane: u32, skill: u32, number: u32, output: u32, row: u32, errors: Errors) -> f32 {
+    let count = skills[skill].inputs;
+    let last = count + 1u + skills[skill].outputs;
     var slope = errors.hidden;
     if row < count {
         slope = errors.hidden * inputs[row];
     }
-    if row == count + 1u {
-        slope = errors.output * hidden[child][lane];
+    if row > count && row < last {
+        let own = row == count + 1u + output;
+        slope = select(0.0f, errors.output * hidden[number][lane], own);
     }
-    if row == count + 2u {
-        slope = select(0.0f, errors.output, lane == 0u);
+    if row == last {
+        slope = select(0.0f, errors.output, lane == output);
     }
     return slope;
 }
@@ -35,18 +38,19 @@ fn learning_rate(s: u32, trial: u32) -> f32 {
 }
 
 fn backward(lane: u32, skill: u32, s: u32, base: u32, child: u32, delta: f32, pace: f32) {
-    let net = net_of(skill, base, child);
-    let count = skills[skill].inputs;
+    let number = select(child, 0u, skills[skill].nets == 1u);
+    let output = child - number;
+    let net = net_of(skill, base, number);
     let rows = skills[skill].rows;
     let slab = rows * LANES;
     let beta1 = settings[s].beta1;
     let beta2 = settings[s].beta2;
     let epsilon2 = settings[s].epsilon2;
-    let found = errors(lane, skill, net, child, delta);
+    let found = errors(lane, skill, net, number, child, delta);
     if settings[s].optimiser == 1u {
         // Adam (Kingma and Ba, 2015) in its second form, with epsilon under the root: one reciprocal root
         // serves where a root and a division would.
-        let clock = base + skills[skill].clock_offset + child;
+        let clock = base + skills[skill].clock_offset + number;
         let first = flush(nets[clock] * beta1);
         let second = flush(nets[clock + CLOCK_SECOND] * beta2);
         let rate = pace * square_root(1.0f - second) * reciprocal(1.0f - first);
@@ -60,7 +64,7 @@ fn backward(lane: u32, skill: u32, s: u32, base: u32, child: u32, delta: f32, pa
         let rest2 = 1.0f - beta2;
         for (var row = 0u; row < rows; row++) {
             let at = net + row * LANES + lane;
-            let g = gradient(lane, count, child, row, found);
+            let g = gradient(lane, skill, number, output, row, found);
             let mean = flush(beta1 * nets[at + slab] + rest1 * g);
             let square = flush(beta2 * nets[at + 2u * slab] + rest2 * (g * g));
             nets[at + slab] = mean;
@@ -70,7 +74,7 @@ fn backward(lane: u32, skill: u32, s: u32, base: u32, child: u32, delta: f32, pa
     } else {
         for (var row = 0u; row < rows; row++) {
             let at = net + row * LANES + lane;
-            let g = gradient(lane, count, child, row, found);
+            let g = gradient(lane, skill, number, output, row, found);
             let velocity = flush(beta1 * nets[at + slab] + pace * g);
             nets[at + slab] = velocity;
             nets[at] = nets[at] + velocity;

@@ -3,6 +3,8 @@
 const DOCKED: u32 = 1u;
 const COLLISION: u32 = 2u;
 const PASSED_DOOR: u32 = 4u;
+const BESIDE_RIGHT: u32 = 8u;
+const BESIDE_LEFT: u32 = 16u;
 const FORWARD: u32 = 4u;
 const BACKWARD: u32 = 5u;
 const NO_ACTION: u32 = 255u;

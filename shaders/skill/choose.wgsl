@@ -1,5 +1,11 @@
-// Boltzmann exploration over the available children, and the greedy choice (paper, section V: "the robot
+// Boltzmann exploration over the allowed children, and the greedy choice (paper, section V: "the robot
 // chose actions randomly, but preferred to choose actions having high utilities").
+//
+// Sets of children are bits: bit c stands for child c.
+
+const CHOICE_LEARNED: u32 = 0u;
+const CHOICE_RANDOM: u32 = 1u;
+const NO_CHILD: u32 = 255u;
 
 var<workgroup> odds: array<f32, MAX_CHILDREN>;
 
@@ -14,18 +20,17 @@ fn sharpness(s: u32, trial: u32) -> f32 {
     return settings[s].sharpness_slope * f32(risen) + settings[s].sharpness_start;
 }
 
-fn weigh(lane: u32, children: u32, masked: u32, sharpness: f32) -> Outlook {
+fn weigh(lane: u32, children: u32, allowed: u32, sharpness: f32) -> Outlook {
     var best = -2.0f;
     var greedy = 0u;
     for (var child = 0u; child < children; child++) {
         let value = q[child];
-        // A lone child is always available.
-        let better = value > best && (child != masked || children == 1u);
+        let better = value > best && ((allowed >> child) & 1u) == 1u;
         best = select(best, value, better);
         greedy = select(greedy, child, better);
     }
     if lane < MAX_CHILDREN {
-        let available = lane < children && (lane != masked || children == 1u);
+        let available = lane < children && ((allowed >> lane) & 1u) == 1u;
         let weight = exponential(sharpness * (q[lane] - best));
         odds[lane] = select(0.0f, weight, available);
     }
@@ -49,4 +54,14 @@ fn pick(outlook: Outlook, word: u32) -> u32 {
         open = open && !here;
     }
     return chosen;
+}
+
+fn choose(lane: u32, s: u32, children: u32, allowed: u32, sharpness: f32, greedy: bool, word: u32) -> u32 {
+    let even = settings[s].choice != CHOICE_LEARNED;
+    let outlook = weigh(lane, children, allowed, select(sharpness, 0.0f, even));
+    let drawn = pick(outlook, word);
+    let first = countTrailingZeros(allowed);
+    let learned = select(drawn, outlook.greedy, greedy);
+    let other = select(first, drawn, settings[s].choice == CHOICE_RANDOM);
+    return select(learned, other, even);
 }

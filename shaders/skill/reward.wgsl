@@ -1,6 +1,8 @@
 // What an action earned: events and their amounts.
 
 const NOWHERE: u32 = 255u;
+const SIDE_FIRST: u32 = 2u;
+const SIDE_LAST: u32 = 10u;
 
 fn room_of(x: f32, y: f32) -> u32 {
     var found = NOWHERE;
@@ -22,6 +24,22 @@ fn passed_door(origin: u32, x: f32, y: f32) -> u32 {
     }
     let passed = clear && room != NOWHERE && origin != NOWHERE && room != origin;
     return select(0u, PASSED_DOOR, passed);
+}
+
+fn beside(near: u32, far: u32, action: u32, events: u32) -> u32 {
+    var left = 255u;
+    var right = 255u;
+    for (var ray = SIDE_FIRST; ray <= SIDE_LAST; ray++) {
+        let reading = (record[ray / 4u] >> (8u * (ray % 4u))) & 0xffu;
+        let mirror = RAYS - ray;
+        let other = (record[mirror / 4u] >> (8u * (mirror % 4u))) & 0xffu;
+        left = select(left, reading, reading < left);
+        right = select(right, other, other < right);
+    }
+    let went = action == FORWARD && (events & COLLISION) == 0u;
+    let on_left = select(0u, BESIDE_LEFT, went && left >= near && left <= far);
+    let on_right = select(0u, BESIDE_RIGHT, went && right >= near && right <= far);
+    return on_left | on_right;
 }
 
 fn reward_of(s: u32, events: u32) -> f32 {

@@ -6,7 +6,7 @@
 use super::{Backend, BackendError, Cohort, Stop, Test, fresh};
 use crate::advance::advance;
 use crate::evaluate::{STATE_CUT, STATE_FRESH, evaluate};
-use crate::learner::layout::{Cursor, Dispatch, Episode, Robot};
+use crate::learner::layout::{Cursor, Dispatch, Episode, Robot, Settings};
 use crate::learner::memory::{Learner, Shared};
 use crate::step::step;
 use bytemuck::Zeroable;
@@ -106,7 +106,7 @@ dispatched! {
     run_evaluate, evaluate_avx2, evaluate_avx512 = evaluate(
         episode: &mut Episode,
         shared: &Shared,
-        settings: &crate::learner::layout::Settings,
+        settings: &[Settings],
         nets: &[f32],
         dispatch: &Dispatch,
         number: u32
@@ -213,7 +213,6 @@ impl Backend for CpuBackend {
                 .zip(cohort.settings.par_chunks(cohort.skills))
                 .zip(cohort.nets.par_chunks(cohort.nets_stride))
                 .for_each(|((episodes, settings), nets)| {
-                    let settings = &settings[test.skill as usize];
                     for (number, episode) in episodes.iter_mut().enumerate() {
                         debug_assert_eq!(episode.state, STATE_FRESH);
                         let shared = &cohort.shared;

@@ -6,7 +6,9 @@
 //! lessons and rows, word by word.
 
 use super::Cohort;
-use crate::learner::layout::{Episode, LANES, LAYOUTS, LESSON_HEADER, RECORD_WORDS, ROW_WORDS, Robot, SkillPlan};
+use crate::learner::layout::{
+    Episode, LANES, LAYOUTS, LESSON_HEADER, MEMORY_WORD, RECORD_WORDS, ROW_WORDS, Robot, SkillPlan,
+};
 use crate::learner::phase::PHASE_FAILED;
 use crate::qnet::backward::CLOCK_SECOND;
 use std::fmt;
@@ -26,12 +28,27 @@ const RECORD: [&str; RECORD_WORDS] = [
     "sonar 20 to 23",
     "light and bumpers",
     "compass",
-    "child, mask and events",
+    "choice and events",
     "reward",
+    "running, applicable and room",
+    "mean range east and west",
+    "mean range north and south",
+    "trace of the light",
+    "trace of a door",
+    "cosine of that door",
+    "sine of that door",
+    "value of child 0",
+    "value of child 1",
+    "value of child 2",
+    "value of child 3",
+    "value of child 4",
+    "value of child 5",
+    "value of child 6",
+    "value of child 7",
 ];
 /// Names of the columns of the trial table.
 const COLUMNS: [&str; ROW_WORDS] = ["skill", "trial", "actions", "steps", "reward", "success", "collisions", "taught"];
-/// Those among the names above that stand for an f32.
+/// Those among the names above that stand for an f32. So do a record's words from [`MEMORY_WORD`] on.
 const NUMBERS: [&str; 2] = ["compass", "reward"];
 /// What a net's three slabs hold: the weights, and what the optimiser keeps of each.
 const SLABS: [&str; 3] = ["", "first moment of the ", "second moment of the "];
@@ -93,35 +110,50 @@ pub(crate) fn sizes(kernel: &'static str, learner: usize, what: &str, left: usiz
 /// Field of a shared struct that holds its word `word`.
 fn field_of(layout: &str, word: usize) -> Place {
     let fields = LAYOUTS.iter().find(|(name, ..)| *name == layout).map_or(&[][..], |(.., fields)| fields);
-    match fields.iter().rfind(|(_, offset, _)| *offset <= 4 * word) {
-        Some(("record", offset, _)) => record_word(word - offset / 4),
-        Some((name, _, wgsl)) => ((*name).to_owned(), *wgsl == "f32"),
-        None => (format!("word {word}"), false),
+    let Some((name, offset, wgsl)) = fields.iter().rfind(|(_, offset, _)| *offset <= 4 * word) else {
+        return (format!("word {word}"), false);
+    };
+    let within = word - offset / 4;
+    if *name == "record" {
+        record_word(within)
+    } else if LAYOUTS.iter().any(|(nested, ..)| nested == wgsl) {
+        let (field, number) = field_of(wgsl, within);
+        (format!("{name}.{field}"), number)
+    } else if wgsl.starts_with("array") {
+        (format!("{name} {within}"), wgsl.contains("f32"))
+    } else {
+        ((*name).to_owned(), *wgsl == "f32")
     }
 }
 
 fn record_word(word: usize) -> Place {
-    (format!("record word {word} ({})", RECORD[word]), NUMBERS.contains(&RECORD[word]))
+    (format!("record word {word} ({})", RECORD[word]), word >= MEMORY_WORD || NUMBERS.contains(&RECORD[word]))
 }
 
-/// Word `word` of a learner's nets.
+/// Word `word` of a learner's nets. A mirrored skill has none of its own.
 fn nets_word(skills: &[SkillPlan], word: usize) -> Place {
-    let Some((skill, plan)) = skills.iter().enumerate().rfind(|(_, plan)| plan.nets_offset as usize <= word) else {
+    let mut owners = skills.iter().enumerate().filter(|(_, plan)| plan.mirrored == 0);
+    let Some((skill, plan)) = owners.rfind(|(_, plan)| plan.nets_offset as usize <= word) else {
         return (format!("nets word {word}"), true);
     };
+    let shared = plan.outputs > 1;
+    let whose = |net: usize| if shared { "all children".to_owned() } else { format!("child {net}") };
     let text = if let Some(lane) = word.checked_sub(plan.clock_offset as usize) {
-        let (order, child) = if lane < CLOCK_SECOND as usize { ("first", lane) } else { ("second", lane - 16) };
-        format!("child {child}, clock of {order} moments")
+        let (order, net) = if lane < CLOCK_SECOND as usize { ("first", lane) } else { ("second", lane - 16) };
+        format!("{}, clock of {order} moments", whose(net))
     } else {
         let within = word - plan.nets_offset as usize;
         let slab = plan.rows as usize * LANES;
-        let (child, slabs, row, unit) = (within / (3 * slab), within / slab % 3, within % slab / LANES, within % LANES);
-        let inputs = plan.inputs as usize;
+        let (net, slabs, row, unit) = (within / (3 * slab), within / slab % 3, within % slab / LANES, within % LANES);
+        let (inputs, last) = (plan.inputs as usize, plan.rows as usize - 1);
         let what = match row {
             row if row < inputs => format!("weight of input {row}"),
-            row => ["hidden bias", "output weight", "output bias"][row - inputs].to_owned(),
+            row if row == inputs => "hidden bias".to_owned(),
+            row if row == last => "output bias".to_owned(),
+            row if shared => format!("output weight of child {}", row - inputs - 1),
+            _ => "output weight".to_owned(),
         };
-        format!("child {child}, {}{what}, unit {unit}", SLABS[slabs])
+        format!("{}, {}{what}, unit {unit}", whose(net), SLABS[slabs])
     };
     (format!("nets word {word} (skill {skill}, {text})"), true)
 }
@@ -137,8 +169,9 @@ fn lessons_word(skills: &[SkillPlan], word: usize) -> Place {
     let (text, number) = match within.checked_sub(LESSON_HEADER) {
         None => (HEADER[within].to_owned(), NUMBERS.contains(&HEADER[within])),
         Some(within) => {
-            let (text, number) = record_word(within % RECORD_WORDS);
-            (format!("step {}, {text}", within / RECORD_WORDS), number)
+            let words = plan.record_words as usize;
+            let (text, number) = record_word(within % words);
+            (format!("step {}, {text}", within / words), number)
         }
     };
     (format!("lessons word {word} (skill {skill}, slot {slot}, {text})"), number)

@@ -52,7 +52,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let overrides = Overrides { set: arguments.set.clone(), seeds: arguments.seeds.clone() };
     let plan = load(&arguments.config, &overrides)?;
     let out = arguments.out.clone().unwrap_or_else(|| Path::new("runs").join(&plan.name));
-    let open = || RunFolder::open(&out, &plan.resolved, &plan.world_text);
+    let worlds: Vec<(&str, &str)> = plan.worlds.iter().map(|world| (&*world.file, &*world.text)).collect();
+    let open = || RunFolder::open(&out, &plan.resolved, &worlds);
     // A folder that is there is looked at first. A new one is made last: what is refused leaves nothing behind.
     let there = if is_new(&out) { None } else { Some(open()?) };
     if there.as_ref().is_some_and(|folder| folder.state() == State::Complete) {
@@ -69,7 +70,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let (learners, trials) = size(&plan);
     tell(if plan.title.is_empty() { &plan.name } else { &plan.title });
-    tell(&format!("world:    {}", plan.world.name));
+    let worlds: Vec<&str> = plan.worlds.iter().map(|placed| placed.world.name.as_str()).collect();
+    tell(&format!("world:    {}", worlds.join(", ")));
     tell(&format!(
         "learners: {learners} ({}, {}), {}",
         count(plan.arms.len(), "arm"),

@@ -1,18 +1,19 @@
 //! The experimental conditions: the base config with each arm's own table laid over it.
 
 use super::error::{ConfigError, list, nearest, suggest};
+use super::hierarchy::{self, Link};
 use super::learning::Idle;
-use super::plan::{Arm, Noise, NoiseKind};
-use super::read::{Item, Section, Table, is_name};
-use super::tree::Node;
-use super::{keys, set, skill};
-use crate::learner::layout::MAX_SKILLS;
-use crate::world::World;
+use super::plan::{Arm, Skill};
+use super::read::{Item, Table, is_name};
+use super::skill::Reader;
+use super::tree::{Entry, Node};
+use super::worlds::Worlds;
+use super::{keys, mirror, robot, set};
 
 /// Name of the only arm of a config that has no `[arm.NAME]`.
 const BASE: &str = "base";
 /// What an arm may change.
-const ARM_KEYS: [&str; 3] = ["learning", "skill", "robot"];
+const ARM_KEYS: [&str; 5] = ["world", "root", "learning", "skill", "robot"];
 
 /// What the arms of a config are read from.
 pub(super) struct Arms<'a> {
@@ -20,54 +21,64 @@ pub(super) struct Arms<'a> {
     pub(super) base: &'a Node,
     /// The tables of the arms, if there are any.
     pub(super) own: Option<&'a Node>,
-    pub(super) world: &'a World,
     /// Lessons in the teacher's bank.
     pub(super) bank: u32,
+    /// Trials after which skills are tested that do not name their own.
+    pub(super) tested_at: &'a [u32],
 }
 
 impl Arms<'_> {
-    /// Reads all arms, so that a mistake in one that is not run is found too; returns those that are run.
-    pub(super) fn read(&self, root: &Table<'_>) -> Result<Vec<Arm>, ConfigError> {
-        let chosen = root.optional(keys::ARMS.name());
+    /// Reads all arms, so that a mistake in one that is not run is found too.
+    pub(super) fn read(&self, root: &Table<'_>, worlds: &mut Worlds<'_>) -> Result<Vec<Arm>, ConfigError> {
         // Read below, merged with each arm.
         for key in ARM_KEYS {
             root.optional(key);
         }
-        let mut idle = Idle::default();
-        let mut arms = Vec::new();
-        match self.own {
-            None => arms.push(self.arm(BASE, self.base, &mut idle)?),
-            Some(own) => {
-                for (entry, item) in (Item { name: "arm".to_owned(), node: own }).table()?.all() {
-                    let name = &entry.key;
-                    if !is_name(name) || name.contains(|c: char| c == '_' || c.is_ascii_uppercase()) {
-                        let hint =
-                            "use small letters, digits and `-`: the name appears in files and on the command line";
-                        return Err(entry.origin.error(format!("`{name}` cannot be the name of an arm"), hint));
-                    }
-                    self.check(&item)?;
-                    let mut tree = self.base.clone();
-                    tree.merge(item.node.clone());
-                    arms.push(self.arm(name, &tree, &mut idle)?);
-                }
-            }
+        if let Some(named) = root.optional(keys::ROOT.name()) {
+            // It may be in force in no arm.
+            named.choice("skills", &set::names(self.base, "skill"))?;
         }
-        if arms.is_empty() {
+        let trees = self.trees()?;
+        let Some((_, first)) = trees.first() else {
             let hint = "add [arm.NAME], or remove [arm] to run the config as it stands";
             return Err(self.own.unwrap_or(self.base).origin.error("there are no arms", hint));
+        };
+        let mut idle = Idle::default();
+        let mut arms = Vec::new();
+        for (name, tree) in &trees {
+            arms.push(self.arm(name, tree, worlds, &mut idle)?);
+        }
+        // What is in nobody's tree is held against the first arm's world.
+        let skills = skills(first)?;
+        let world = Some(&worlds.placed[arms[0].world].world);
+        let reader = Reader { world, ..self.reader(first) };
+        let trained = |name: &str| arms.iter().any(|arm| arm.skills.iter().any(|skill| skill.name == name));
+        for link in hierarchy::links(&skills)?.iter().filter(|link| !trained(link.name) && link.mirror.is_none()) {
+            reader.skill(link, &mut idle)?;
         }
         idle.finish()?;
-        match chosen {
-            Some(chosen) => select(arms, &chosen),
-            None => Ok(arms),
+        Ok(arms)
+    }
+
+    /// The name and the complete config of each arm.
+    fn trees(&self) -> Result<Vec<(String, Node)>, ConfigError> {
+        let Some(own) = self.own else { return Ok(vec![(BASE.to_owned(), self.base.clone())]) };
+        let mut trees = Vec::new();
+        for (entry, item) in (Item { name: "arm".to_owned(), node: own }).table()?.all() {
+            small_name(entry, "an arm")?;
+            self.check(&item)?;
+            let mut tree = self.base.clone();
+            tree.merge(item.node.clone());
+            trees.push((entry.key.clone(), tree));
         }
+        Ok(trees)
     }
 
     /// An arm changes skills and robots that are there; everything else is common to all arms.
     fn check(&self, item: &Item<'_>) -> Result<(), ConfigError> {
         for (entry, part) in item.table()?.all() {
             if !ARM_KEYS.contains(&entry.key.as_str()) {
-                let common = self.base.get(&entry.key).is_some();
+                let common = keys::ALL.iter().any(|key| key.path.split('.').next() == Some(&entry.key));
                 let message = if common {
                     format!("`{}` is the same for all arms", entry.key)
                 } else {
@@ -92,52 +103,68 @@ impl Arms<'_> {
         Ok(())
     }
 
-    fn arm(&self, name: &str, tree: &Node, idle: &mut Idle) -> Result<Arm, ConfigError> {
+    /// Reads skills that are not trained; those that are also need a world and an order.
+    fn reader<'b>(&'b self, tree: &'b Node) -> Reader<'b> {
+        let learning = tree.get("learning");
+        Reader { learning, world: None, bank: self.bank, tested_at: self.tested_at, order: &[] }
+    }
+
+    fn arm(&self, name: &str, tree: &Node, worlds: &mut Worlds<'_>, idle: &mut Idle) -> Result<Arm, ConfigError> {
         let root = Item::root(tree).table()?;
-        let mut skills = Vec::new();
-        let table = root.required("skill", "{ ... }").map_err(|_| no_skill(tree))?.table()?;
-        for (entry, item) in table.all() {
-            if !is_name(&entry.key) {
-                let message = format!("`{}` cannot be the name of a skill", entry.key);
-                return Err(entry.origin.error(message, "use letters, digits, `-` and `_` only"));
-            }
-            skills.push(skill::read((&entry.key, &item), tree.get("learning"), (self.world, self.bank), idle)?);
-            if skills.len() > MAX_SKILLS {
-                return Err(entry
-                    .origin
-                    .error("there are too many skills", format!("at most {MAX_SKILLS} are possible")));
+        let world = worlds.place(&root.required(keys::WORLD.name(), "\"worlds/office.toml\"")?)?;
+        let table = skills(tree)?;
+        let links = hierarchy::links(&table)?;
+        let top = hierarchy::root(root.optional(keys::ROOT.name()).as_ref(), &links)?;
+        let order = hierarchy::order(&links, top)?;
+        let reader = Reader { world: Some(&worlds.placed[world].world), order: &order, ..self.reader(tree) };
+        let mut skills: Vec<Skill> = Vec::new();
+        for &number in &order {
+            skills.push(trained(&links[number], &reader, &skills, idle)?);
+        }
+        let reader = self.reader(tree);
+        for (_, link) in links.iter().enumerate().filter(|(number, _)| !order.contains(number)) {
+            match link.mirror {
+                None => drop(reader.skill(link, idle)?),
+                Some(_) => drop(reader.unused(link, idle)?),
             }
         }
-        if skills.is_empty() {
-            return Err(no_skill(tree));
-        }
-        let robot = root.required("robot", "{}")?.table()?;
-        let noise = noise(Section(robot.required("noise", "{}")?.table()?))?;
-        robot.finish()?;
-        Ok(Arm { name: name.to_owned(), skills, noise })
+        let (noise, robot) = robot::read(&root.required("robot", "{}")?)?;
+        Ok(Arm { name: name.to_owned(), world, skills, noise, robot })
     }
 }
 
-fn no_skill(tree: &Node) -> ConfigError {
-    let hint = "add [skill.dock] with inputs, reward, starts, ends and the number of trials";
-    tree.origin.file_error("the config has no skill", hint)
+/// Reads a skill of an arm's tree; `earlier` ones are those that stand before it.
+fn trained(link: &Link<'_>, reader: &Reader<'_>, earlier: &[Skill], idle: &mut Idle) -> Result<Skill, ConfigError> {
+    let Some((source, item)) = &link.mirror else { return reader.skill(link, idle) };
+    let own = reader.unused(link, idle)?;
+    let number = reader.place(*source);
+    let image = mirror::image(link.name, (number, &earlier[number]), item)?;
+    Ok(match own {
+        Some(tested_at) => Skill { tested_at, ..image },
+        None => image,
+    })
 }
 
-fn noise(section: Section<'_>) -> Result<Noise, ConfigError> {
-    let kind = if section.choice(&keys::NOISE_KIND)? == 0 { NoiseKind::Gaussian } else { NoiseKind::Uniform };
-    let noise = Noise {
-        kind,
-        actuator: section.number(&keys::NOISE_ACTUATOR)?,
-        sonar: section.number(&keys::NOISE_SONAR)?,
-        light: section.number(&keys::NOISE_LIGHT)?,
-        compass: section.number(&keys::NOISE_COMPASS)?,
-    };
-    section.0.finish()?;
-    Ok(noise)
+/// The table of all skills.
+fn skills(tree: &Node) -> Result<Table<'_>, ConfigError> {
+    let hint = "add [skill.dock] with inputs, reward, starts, ends and the number of trials";
+    let none = || tree.origin.file_error("the config has no skill", hint);
+    let table = Item::root(tree).table()?.optional("skill").ok_or_else(none)?.table()?;
+    if table.all().is_empty() { Err(none()) } else { Ok(table) }
+}
+
+/// Refuses names of arms and alterations that could not stand in files and on the command line.
+pub(super) fn small_name(entry: &Entry, what: &str) -> Result<(), ConfigError> {
+    let name = &entry.key;
+    if is_name(name) && !name.contains(|c: char| c == '_' || c.is_ascii_uppercase()) {
+        return Ok(());
+    }
+    let hint = "use small letters, digits and `-`: the name appears in files and on the command line";
+    Err(entry.origin.error(format!("`{name}` cannot be the name of {what}"), hint))
 }
 
 /// The chosen arms, in the order of the file.
-fn select(arms: Vec<Arm>, chosen: &Item<'_>) -> Result<Vec<Arm>, ConfigError> {
+pub(super) fn select(arms: Vec<Arm>, chosen: &Item<'_>) -> Result<Vec<Arm>, ConfigError> {
     let names: Vec<&str> = arms.iter().map(|arm| arm.name.as_str()).collect();
     let mut wanted = vec![false; arms.len()];
     for item in chosen.items()? {

@@ -99,7 +99,7 @@ pub enum Basis {
 /// One key of a config file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Key {
-    /// Dotted path; `*` stands for the name of a skill.
+    /// Dotted path; `*` stands for the name of a skill or of an alteration.
     pub path: &'static str,
     /// Default as TOML; none if the key is required, or may be left out for the reason that `meaning` gives.
     pub default: Option<&'static str>,
@@ -139,11 +139,14 @@ const SHARE: Allowed = Number(Bounds::between(0.0, 1.0));
 const RELATIVE: Allowed = Number(Bounds::between(0.0, 0.5));
 const DECAY: Allowed = Number(Bounds::below(0.0, 1.0));
 const HEAT: Allowed = Number(Bounds::between(0.0, 10_000.0));
+/// Sonar readings are whole inches up to this.
+const READING: Allowed = Number(Bounds::between(0.0, 127.0));
 
 keys! {
     NAME = "name", None, Other("letters, digits, - and _"), Ours, "names the run folder; the file's stem if left out";
     TITLE = "title", Some("''"), Other("text"), Ours, "one line that says what the experiment is for";
     WORLD = "world", None, Other("a path"), Ours, "the world file, relative to the config file; required";
+    ROOT = "root", None, Other("the name of a skill"), Ours, "the skill at the top: only its tree is trained; if left out, the last skill that no other one is made of";
     SEED = "seed", Some("1993"), Whole(0, u32::MAX), Ours, "key of what all learners share: the teacher's bank and the planner's trials";
     SEEDS = "seeds", Some("'0..7'"), Other("ranges such as '0..7', '0..=6', '5' or '1,2,5..9', or a list of whole numbers"), Paper, "one learner per arm and seed; the paper has 7 runs";
     ARMS = "arms", None, Other("a list of arms"), Ours, "the arms that are run; all if left out";
@@ -160,6 +163,12 @@ keys! {
     NOISE_SONAR = "robot.noise.sonar", Some("0.10"), RELATIVE, Paper, "share of each sonar range";
     NOISE_LIGHT = "robot.noise.light", Some("0.10"), RELATIVE, Paper, "share of each light intensity, before the threshold";
     NOISE_COMPASS = "robot.noise.compass", Some("2.865"), Number(Bounds::between(0.0, 180.0)), Ours, "degrees on the compass; 0.05 rad";
+
+    MEMORY_LIGHT = "robot.memory.light", Some("0.97"), DECAY, Ours, "what is left, after each step, of the trace of having seen the light";
+    MEMORY_DOORS = "robot.memory.doors", Some("0.97"), DECAY, Ours, "what is left, after each step, of the trace of having passed a door";
+    MEMORY_RANGES = "robot.memory.ranges", Some("0.9"), DECAY, Ours, "weight of the past in the running means of ranges";
+    BESIDE_NEAR = "robot.beside.near", Some("15.0"), READING, Ours, "least sonar reading, in inches, at which the nearest thing on one side counts as a wall followed";
+    BESIDE_FAR = "robot.beside.far", Some("30.0"), READING, Ours, "greatest such reading, in inches; more than near";
 
     HIDDEN = "learning.hidden", Some("32"), Whole(1, 32), Ours, "hidden units of each net; one net per child";
     INIT = "learning.init", Some("0.2"), Number(Bounds::above(0.0, 10.0)), Ours, "initial weights are uniform in plus or minus this";
@@ -186,24 +195,49 @@ keys! {
     TAUGHT_REPLAYS = "learning.taught_replays", Some("3"), Whole(0, 1000), Ours, "taught lessons replayed after each trial";
     TAUGHT_ALWAYS = "learning.taught_always", Some("true"), Flag, Ours, "taught steps are learned whatever their action's probability";
     TIMEOUT_TERMINAL = "learning.timeout_terminal", Some("true"), Flag, Ours, "a trial cut at the step limit ends with value 0 (true), or with its last observation's value (false)";
+    MIRROR_REPLAYS = "learning.mirror_replays", Some("false"), Flag, Ours, "half of the replayed lessons are seen in a mirror: left and right exchanged";
     MASK_BLOCKED = "learning.mask_blocked", Some("true"), Flag, Ours, "an action that was just blocked is not available on the next step";
 
-    SKILL_INPUTS = "skill.*.inputs", None, Other("a list of sonar, sonar(SCALE), sonar-far, light, bumpers, compass"), Ours, "what the nets see, in order; required. sonar is sonar(60), with the decay in inches";
-    SKILL_CHILDREN = "skill.*.children", Some("['turn+15', 'turn-15', 'turn+60', 'turn-60', 'move+12', 'move-12']"), Other("a list of actions"), Paper, "what the skill chooses among; degrees counter-clockwise, inches forward";
-    SKILL_REWARD = "skill.*.reward", None, Other("{ event = amount } for docked, collision, passed-door"), Ours, "paid for events; 0 for those left out; required";
+    SHARED_NET = "learning.shared_net", Some("false"), Flag, Ours, "one net with an output per child, instead of a net per child";
+    BACKUP = "learning.backup", Some("'decisions'"), Choice(&["steps", "persistent", "decisions"]), Ours, "how a skill over skills learns from a trial: from every step, over all applicable children (the paper read literally); from every step, over those that persistence would allow; or at decisions only";
+    ADVANTAGE_SCALE = "learning.advantage_scale", Some("1.0"), Number(Bounds::between(1.0, 1000.0)), Ours, "targets are moved this many times as far from the greatest Q-value; 1 leaves them";
+    INNER_SHARE = "learning.inner_share", Some("0.1"), SHARE, Ours, "share of the steps between decisions that the backup `decisions` learns from too";
+    CHILD_HEAT = "learning.child_inverse_temperature", Some("60.0"), HEAT, Ours, "1/T at which the children, and theirs, choose while this skill is being learned or tested";
+
+    SKILL_MIRROR = "skill.*.mirror", Some("false"), Other("the name of a skill, or false"), Ours, "this skill is the mirror image of that one, from which it has everything; its other keys, but tested_at, are then not used";
+    SKILL_INPUTS = "skill.*.inputs", None, Other("a list of sonar, sonar(SCALE), sonar-far, sonar-compass, sonar-compass(SCALE), light, lit, bumpers, compass, compass2, values, applicable, running, light-trace, door-trace, range-means, room"), Ours, "what the nets see, in order; required. sonar is sonar(60), with the decay in inches";
+    SKILL_CHILDREN = "skill.*.children", Some("['turn+15', 'turn-15', 'turn+60', 'turn-60', 'move+12', 'move-12']"), Other("a list of actions and skills"), Paper, "what the skill chooses among; degrees counter-clockwise, inches forward";
+    SKILL_APPLICABLE = "skill.*.applicable", Some("{}"), Other("{ child = threshold } with numbers between -1 and 1, learned, or learned(PROBABILITY)"), Ours, "the value of its best child, in units of reward_scale, from which a skill among the children is applicable; learned is where success has probability 0.5. Those left out always are";
+    SKILL_CHOICE = "skill.*.choice", Some("'learned'"), Choice(&["learned", "random", "ordered"]), Paper, "a child is chosen by the learned Q-values, at random, or as the first one allowed";
+    SKILL_PERSISTENCE = "skill.*.persistence", Some("true"), Other("true, false or training"), Paper, "whether a chosen child is kept to, and not in tests if training";
+    SKILL_APPLICABILITY = "skill.*.applicability", Some("true"), Flag, Paper, "only applicable children are chosen";
+    SKILL_INTERRUPT = "skill.*.interrupt", Some("true"), Flag, Ours, "a running child that stops being applicable may be left";
+    SKILL_DECISION_STEPS = "skill.*.decision_steps", Some("30"), Whole(0, 255), Ours, "steps without any event after which the choice is open again, 0 for never";
+    SKILL_PLANNED = "skill.*.planned", Some("false"), Flag, Ours, "the planner, which knows floor plan and pose, stands in for the nets of a skill over actions; lessons and trials are then not used. Privileged";
+    SKILL_REWARD = "skill.*.reward", None, Other("{ event = amount } for docked, collision, passed-door, beside-right, beside-left"), Ours, "paid for events; 0 for those left out; required";
     SKILL_STARTS = "skill.*.starts", Some("'anywhere'"), Other("a region, or { region = share } with shares that sum to 1"), Paper, "where training trials start";
     SKILL_TESTS = "skill.*.tests", Some("'anywhere'"), Other("a region"), Ours, "where test trials start";
+    SKILL_TESTED_AT = "skill.*.tested_at", None, Other("ascending whole numbers"), Ours, "trials after which the skill is tested; as evaluate.at if left out";
     SKILL_ENDS = "skill.*.ends", Some("[]"), Other("a list of events"), Ours, "events that end a trial as achieved";
     SKILL_MAX_STEPS = "skill.*.max_steps", Some("30"), Whole(1, 255), Paper, "primitive steps after which a trial is cut; 30 is the paper's for docking";
-    SKILL_LESSONS = "skill.*.lessons", Some("0"), Whole(0, 10_000), Ours, "taught lessons before the first trial";
-    SKILL_TRIALS = "skill.*.trials", Some("300"), Whole(1, MANY), Paper, "training trials; 300 is the paper's for docking";
+    SKILL_LESSONS = "skill.*.lessons", Some("0"), Whole(0, 10_000), Ours, "taught lessons before the first trial; skills over skills have none";
+    SKILL_TRIALS = "skill.*.trials", Some("300"), Whole(0, MANY), Paper, "training trials; 300 is the paper's for docking";
+
+    ALTER_WORLD = "alter.*.world", None, Other("a path"), Ours, "the world file in which learned roots are tested once more; the config's own if left out";
+    ALTER_NOISE = "alter.*.noise", None, Other("a table as robot.noise"), Ours, "the noise with which they are, laid over robot.noise; each arm's own if left out";
 }
 
 /// Amount paid for an event.
 pub const AMOUNT: Bounds = Bounds::between(-1e6, 1e6);
 /// Share of trials that start in a region.
 pub const START_SHARE: Bounds = Bounds::above(0.0, 1.0);
+/// Value from which a child is applicable, set by hand.
+pub const THRESHOLD: Bounds = Bounds::between(-1.0, 1.0);
+/// Probability of success at a learned threshold.
+pub const PROBABILITY: Bounds = Bounds::inside(0.0, 1.0);
+/// The same of `learned` without a number. Ours.
+pub const PROBABILITY_DEFAULT: f32 = 0.5;
 /// Decay of the near sonar coding, inches.
 pub const SONAR_SCALE: Bounds = Bounds::between(1.0, 1000.0);
-/// Decay of `sonar` without a number, inches. Ours.
+/// Decay of `sonar` and `sonar-compass` without a number, inches. Ours.
 pub const SONAR_DEFAULT: f32 = 60.0;

@@ -2,7 +2,7 @@
 
 use super::error::ConfigError;
 use super::keys;
-use super::plan::{Learning, Optimiser};
+use super::plan::{Backup, Learning, Optimiser};
 use super::read::{Item, Section};
 use super::tree::Node;
 use std::sync::Arc;
@@ -80,7 +80,17 @@ pub(super) fn read(item: &Item<'_>, idle: &mut Idle) -> Result<Learning, ConfigE
         taught_replays: section.whole(&keys::TAUGHT_REPLAYS)?,
         taught_always: section.flag(&keys::TAUGHT_ALWAYS)?,
         timeout_terminal: section.flag(&keys::TIMEOUT_TERMINAL)?,
+        mirror_replays: section.flag(&keys::MIRROR_REPLAYS)?,
         mask_blocked: section.flag(&keys::MASK_BLOCKED)?,
+        shared_net: section.flag(&keys::SHARED_NET)?,
+        backup: match section.choice(&keys::BACKUP)? {
+            0 => Backup::Steps,
+            1 => Backup::Persistent,
+            _ => Backup::Decisions,
+        },
+        advantage_scale: section.number(&keys::ADVANTAGE_SCALE)?,
+        inner_share: section.number(&keys::INNER_SHARE)?,
+        child_inverse_temperature: section.number(&keys::CHILD_HEAT)?,
     };
     section.0.finish()?;
     Ok(learning)

@@ -4,14 +4,14 @@
 //! `--set arm.NAME.key=value` goes first). Within a skill, `skill.NAME.learning` lies over `learning`, also over an
 //! arm's: what names the skill is more specific.
 
-use super::arms::Arms;
+use super::arms::{self, Arms};
 use super::error::ConfigError;
 use super::keys::{self, Key};
 use super::plan::{Evaluate, Plan, Teacher};
 use super::read::{Item, Section, Table};
 use super::tree::{Node, Origin, Source, Value};
-use super::{seeds, set, write};
-use crate::world::{self, World};
+use super::worlds::Worlds;
+use super::{alter, seeds, set, write};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ pub struct Overrides {
     pub seeds: Option<String>,
 }
 
-/// Reads a config file, the world file that it names, and the command line's changes.
+/// Reads a config file, the world files that it names, and the command line's changes.
 pub fn load(path: &Path, overrides: &Overrides) -> Result<Plan, ConfigError> {
     let text = std::fs::read_to_string(path).map_err(|error| ConfigError::unreadable(path, "config file", &error))?;
     let mut tree = Node::parse(&text, path)?;
@@ -37,7 +37,8 @@ pub fn load(path: &Path, overrides: &Overrides) -> Result<Plan, ConfigError> {
         let source = Arc::new(Source::Argument(seeds::argument(text)));
         tree.put("seeds", Node { value: Value::Text(text.clone()), origin: Origin { source, span: 0..0 } });
     }
-    let own = tree.remove("arm").map(|entry| entry.node);
+    let mut own = tree.remove("arm").map(|entry| entry.node);
+    let mut altered = tree.remove("alter").map(|entry| entry.node);
     let mut base = defaults(&tree)?;
     base.merge(tree);
 
@@ -46,19 +47,32 @@ pub fn load(path: &Path, overrides: &Overrides) -> Result<Plan, ConfigError> {
         Some(item) => item.short_name()?.to_owned(),
         None => path.file_stem().map_or_else(|| "config".to_owned(), |stem| stem.to_string_lossy().into_owned()),
     };
-    let (world, world_text) = world(&root.required(keys::WORLD.name(), "\"worlds/office.toml\"")?, path)?;
+    let mut worlds = Worlds::new(path);
+    worlds.place(&root.required(keys::WORLD.name(), "\"worlds/office.toml\"")?)?;
     let teacher = teacher(&root)?;
     let evaluate = evaluate(&root)?;
-    let arms = Arms { base: &base, own: own.as_ref(), world: &world, bank: teacher.bank }.read(&root)?;
+    let arms = Arms { base: &base, own: own.as_ref(), bank: teacher.bank, tested_at: &evaluate.at };
+    let mut arms = arms.read(&root, &mut worlds)?;
+    let alterations = match &altered {
+        Some(altered) => alter::read(altered, &base, &arms, &mut worlds)?,
+        None => Vec::new(),
+    };
+    if let Some(chosen) = root.optional(keys::ARMS.name()) {
+        arms = arms::select(arms, &chosen)?;
+    }
     let section = Section(root);
     let title = section.required(&keys::TITLE, "\"...\"")?.text()?.to_owned();
     let run_seed = section.whole(&keys::SEED)?;
     let seeds = seeds::read(&section.required(&keys::SEEDS, "\"0..7\"")?)?;
     section.0.finish()?;
 
-    let resolved = resolve(base, &name, own);
+    for group in own.iter_mut().chain(&mut altered) {
+        worlds.rename(group)?;
+    }
     let source = path.to_owned();
-    Ok(Plan { name, source, title, run_seed, seeds, world, world_text, arms, evaluate, teacher, resolved })
+    let worlds = worlds.placed;
+    let resolved = resolve(base, (&name, &worlds[0].file), [("arm", own), ("alter", altered)]);
+    Ok(Plan { name, source, title, run_seed, seeds, worlds, arms, alterations, evaluate, teacher, resolved })
 }
 
 /// The tree of all defaults, with one table for each skill of the file, in its order.
@@ -95,16 +109,6 @@ fn default(key: &Key, text: &str, path: &[&str]) -> Result<Node, ConfigError> {
     Ok(node)
 }
 
-fn world(item: &Item<'_>, config: &Path) -> Result<(World, String), ConfigError> {
-    let path = config.parent().unwrap_or(Path::new("")).join(item.text()?);
-    let text = std::fs::read_to_string(&path).map_err(|error| {
-        let error = ConfigError::unreadable(&path, "world file", &error);
-        let hint = format!("it was looked for at {}; the path starts from the config file's folder", path.display());
-        item.error(error.message(), hint)
-    })?;
-    Ok((world::parse(&text, &path)?, text))
-}
-
 fn teacher(root: &Table<'_>) -> Result<Teacher, ConfigError> {
     let section = Section(root.required("teacher", "{}")?.table()?);
     let teacher = Teacher {
@@ -119,29 +123,22 @@ fn teacher(root: &Table<'_>) -> Result<Teacher, ConfigError> {
 
 fn evaluate(root: &Table<'_>) -> Result<Evaluate, ConfigError> {
     let section = Section(root.required("evaluate", "{}")?.table()?);
-    let mut at = Vec::new();
-    for item in section.required(&keys::EVALUATE_AT, "[0, 100]")?.items()? {
-        let trials = item.whole(0, keys::MANY)?;
-        if at.last().is_some_and(|&last| last >= trials) {
-            return Err(
-                item.error(format!("`{}` does not rise", item.name), "write each number once, in ascending order")
-            );
-        }
-        at.push(trials);
-    }
+    let at = section.required(&keys::EVALUATE_AT, "[0, 100]")?.ascending(keys::MANY)?;
     let evaluate = Evaluate { at, episodes: section.whole(&keys::EVALUATE_EPISODES)? };
     section.0.finish()?;
     Ok(evaluate)
 }
 
-/// The text that gives this plan again from a run folder, where the world lies beside it as `world.toml`.
-fn resolve(mut base: Node, name: &str, arms: Option<Node>) -> String {
+/// The text that gives this plan again from a run folder, where the worlds lie under the names that they have here.
+fn resolve(mut base: Node, (name, world): (&str, &str), groups: [(&str, Option<Node>); 2]) -> String {
     let origin = base.origin.clone();
     let text = |text: &str| Node { value: Value::Text(text.to_owned()), origin: origin.clone() };
     base.put(keys::NAME.name(), text(name));
-    base.put(keys::WORLD.name(), text("world.toml"));
-    if let Some(arms) = arms {
-        base.put("arm", arms);
+    base.put(keys::WORLD.name(), text(world));
+    for (key, group) in groups {
+        if let Some(group) = group {
+            base.put(key, group);
+        }
     }
     format!("# Resolved by skilltree: defaults, config file and command line together.\n{}", write::document(&base))
 }

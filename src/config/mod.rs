@@ -2,19 +2,27 @@
 //!
 //! [`keys`] is the one table of defaults and ranges. `tree` holds TOML with the place of every value, `set` adds what
 //! the command line changes, `read` takes typed values out and refuses what it does not know, and every complaint
-//! is a [`ConfigError`] that shows the place and a way out. [`load()`] puts the layers together.
+//! is a [`ConfigError`] that shows the place and a way out. `hierarchy` finds the skills of an arm and their order,
+//! `worlds` the floor plans. [`load()`] puts the layers together.
 
+mod alter;
 mod arms;
+mod children;
 pub mod error;
+mod hierarchy;
+mod inputs;
 pub mod keys;
 mod learning;
 mod load;
+mod mirror;
 pub mod plan;
 pub(crate) mod read;
+mod robot;
 mod seeds;
 mod set;
 mod skill;
 pub(crate) mod tree;
+mod worlds;
 mod write;
 
 pub use error::{ConfigError, Place};

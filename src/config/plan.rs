@@ -163,6 +163,19 @@ pub enum Child {
     Skill(usize),
 }
 
+impl Child {
+    /// What a mirror shows of it: a turn the other way.
+    pub fn mirrored(self) -> Self {
+        match self {
+            Self::Action(Action::TurnLeft15) => Self::Action(Action::TurnRight15),
+            Self::Action(Action::TurnRight15) => Self::Action(Action::TurnLeft15),
+            Self::Action(Action::TurnLeft60) => Self::Action(Action::TurnRight60),
+            Self::Action(Action::TurnRight60) => Self::Action(Action::TurnLeft60),
+            same => same,
+        }
+    }
+}
+
 /// From which value of its best child on a skill is applicable (paper, section VI.B).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Threshold {
@@ -394,6 +407,8 @@ pub struct Learning {
     pub taught_always: bool,
     /// A trial cut at the step limit ends with value 0 (true), or with the value of its last observation (false).
     pub timeout_terminal: bool,
+    /// Half of the replayed lessons are seen in a mirror: what is right of the robot on its left, turns reversed.
+    pub mirror_replays: bool,
     /// An action that was just blocked is not available on the next step.
     pub mask_blocked: bool,
     /// One net with an output per child, instead of a net per child.

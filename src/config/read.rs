@@ -10,6 +10,11 @@ pub(crate) fn is_name(text: &str) -> bool {
     !text.is_empty() && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '_')
 }
 
+/// The text in brackets after a name, as in `sonar(60)`.
+pub(crate) fn argument<'a>(text: &'a str, name: &str) -> Option<&'a str> {
+    text.strip_prefix(name)?.strip_prefix('(')?.strip_suffix(')').map(str::trim)
+}
+
 /// A value with its dotted name, for messages.
 #[derive(Debug, Clone)]
 pub(crate) struct Item<'a> {
@@ -114,6 +119,44 @@ impl<'a> Item<'a> {
             }
             _ => Err(self.wrong("a list", "write it as [ ..., ... ]")),
         }
+    }
+
+    /// A list that is not empty, not too long, and in which nothing is twice.
+    pub(crate) fn distinct<T: PartialEq>(
+        &self,
+        most: usize,
+        read: impl Fn(&Item<'a>) -> Result<T, ConfigError>,
+    ) -> Result<Vec<T>, ConfigError> {
+        let mut out = Vec::new();
+        for one in self.items()? {
+            let value = read(&one)?;
+            if out.contains(&value) {
+                return Err(one.error(format!("`{}` is there twice", one.text()?), "name each once"));
+            }
+            out.push(value);
+        }
+        if out.is_empty() {
+            return Err(self.error(format!("`{}` is empty", self.name), "name at least one"));
+        }
+        if out.len() > most {
+            let message = format!("`{}` has {} entries", self.name, out.len());
+            return Err(self.error(message, format!("at most {most} fit")));
+        }
+        Ok(out)
+    }
+
+    /// A list of whole numbers up to `high`, each more than the one before.
+    pub(crate) fn ascending(&self, high: u32) -> Result<Vec<u32>, ConfigError> {
+        let mut out = Vec::new();
+        for item in self.items()? {
+            let number = item.whole(0, high)?;
+            if out.last().is_some_and(|&last| last >= number) {
+                let message = format!("`{}` does not rise", item.name);
+                return Err(item.error(message, "write each number once, in ascending order"));
+            }
+            out.push(number);
+        }
+        Ok(out)
     }
 
     /// A list of exactly N numbers of any reasonable size; `shape` shows them, for the hint.

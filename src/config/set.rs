@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 const SHAPE: &str = "write --set key=value, such as --set learning.rate=0.01";
 
-/// Lays one `--set` over the tree. It may not invent skills or arms.
+/// Lays one `--set` over the tree. It may not invent skills, arms or alterations.
 pub(super) fn apply(tree: &mut Node, argument: &str) -> Result<(), ConfigError> {
     let shown = format!("--set {argument}");
     let wrong = |message: &str, hint: &str| ConfigError::new(Place::Argument(shown.clone()), message, hint);
@@ -41,19 +41,21 @@ fn read(value: &str, source: &Arc<Source>) -> Option<Result<Node, ConfigError>> 
     Node::parse_value(value, source).or_else(word)
 }
 
-/// Skills and arms that a `--set` path names must be in the file.
+/// Skills, arms and alterations that a `--set` path names must be in the file.
 fn known(tree: &Node, keys: &[&str], wrong: &dyn Fn(&str, &str) -> ConfigError) -> Result<(), ConfigError> {
     let check = |group: &str, name: &str| {
         let names = names(tree, group);
         if names.contains(&name) {
             return Ok(());
         }
-        Err(wrong(&format!("there is no {group} `{name}`"), &suggest(name, &format!("{group}s"), &names)))
+        let what = if group == "alter" { "alteration" } else { group };
+        Err(wrong(&format!("there is no {what} `{name}`"), &suggest(name, &format!("{what}s"), &names)))
     };
     match keys {
         ["skill", skill, ..] => check("skill", skill),
         ["arm", arm, "skill", skill, ..] => check("arm", arm).and_then(|()| check("skill", skill)),
         ["arm", arm, ..] => check("arm", arm),
+        ["alter", alteration, ..] => check("alter", alteration),
         _ => Ok(()),
     }
 }

@@ -1,154 +1,167 @@
 //! The keys of one `[skill.NAME]` table.
 
-use super::error::{ConfigError, list, suggest};
+use super::error::{ConfigError, suggest};
+use super::hierarchy::Link;
 use super::keys;
 use super::learning::{self, Idle};
-use super::plan::{Action, Event, Input, Skill};
+use super::plan::{Child, Event, Learning, Skill};
 use super::read::{Item, Section};
 use super::tree::{Node, Value};
-use crate::learner::layout::{MAX_CHILDREN, MAX_GROUPS, MAX_INPUTS, MAX_STARTS};
+use super::{children, inputs};
+use crate::learner::layout::MAX_STARTS;
 use crate::world::World;
 
-/// Reads a skill from its complete table; `learning` holds what it does not override, `bank` the lessons there are.
-pub(super) fn read(
-    (name, item): (&str, &Item<'_>),
-    learning: Option<&Node>,
-    (world, bank): (&World, u32),
-    idle: &mut Idle,
-) -> Result<Skill, ConfigError> {
-    let section = Section(item.table()?);
-    let inputs = inputs(&section.required(&keys::SKILL_INPUTS, "[\"sonar\", \"light\", \"bumpers\"]")?, world)?;
-    let children = children(&section.required(&keys::SKILL_CHILDREN, "[\"turn+15\", \"move+12\"]")?, name)?;
-    let reward = reward(&section.required(&keys::SKILL_REWARD, "{ docked = 100, collision = -10 }")?, world)?;
-    let starts = starts(&section.required(&keys::SKILL_STARTS, "\"anywhere\"")?, world)?;
-    let tests = section.required(&keys::SKILL_TESTS, "\"anywhere\"")?;
-    let tests = region(tests.text()?, &|message, hint| tests.error(message, hint), world)?;
-    let ends = ends(&section.required(&keys::SKILL_ENDS, "[\"docked\"]")?, world)?;
+/// What the skills of an arm are read with, besides their own tables.
+#[derive(Debug)]
+pub(super) struct Reader<'a> {
+    /// What `skill.NAME.learning` lies over.
+    pub(super) learning: Option<&'a Node>,
+    /// The arm's floor plan. None for skills that the arm does not train: they may belong in another one, so that
+    /// regions, events and inputs are not held against it.
+    pub(super) world: Option<&'a World>,
+    /// Lessons in the teacher's bank.
+    pub(super) bank: u32,
+    /// Trials after which skills are tested that do not name their own.
+    pub(super) tested_at: &'a [u32],
+    /// The arm's skills, by their places in the file.
+    pub(super) order: &'a [usize],
+}
 
-    let mut merged = learning.cloned().unwrap_or_else(|| Node::empty(item.origin().clone()));
-    let over = section.0.optional("learning");
-    if let Some(over) = &over {
-        over.table()?;
-        merged.merge(over.node.clone());
+impl Reader<'_> {
+    /// Reads a skill that is no mirror image.
+    pub(super) fn skill(&self, link: &Link<'_>, idle: &mut Idle) -> Result<Skill, ConfigError> {
+        let world = self.world;
+        let section = Section(link.item.table()?);
+        let asked = section.required(&keys::SKILL_INPUTS, "[\"sonar\", \"light\", \"bumpers\"]")?;
+        let inputs = inputs::read(&asked, world)?;
+        // These two are in the link already.
+        section.0.optional(keys::SKILL_CHILDREN.name());
+        section.0.optional(keys::SKILL_MIRROR.name());
+        let applicable = children::applicable(&section.required(&keys::SKILL_APPLICABLE, "{}")?, &link.children)?;
+        let reward = reward(&section.required(&keys::SKILL_REWARD, "{ docked = 100, collision = -10 }")?, world)?;
+        let starts = starts(&section.required(&keys::SKILL_STARTS, "\"anywhere\"")?, world)?;
+        let tests = section.required(&keys::SKILL_TESTS, "\"anywhere\"")?;
+        let tests = region(tests.text()?, &|message, hint| tests.error(message, hint), world)?;
+        let ends = ends(&section.required(&keys::SKILL_ENDS, "[\"docked\"]")?, world)?;
+        let planned = planned(&section, link)?;
+        let (lessons, trials) = (self.lessons(&section, link)?, section.whole(&keys::SKILL_TRIALS)?);
+        let skill = Skill {
+            name: link.name.to_owned(),
+            inputs,
+            children: link.children.iter().map(|(child, _)| self.child(*child)).collect(),
+            applicable,
+            choice: children::choice(&section)?,
+            persistence: children::persistence(&section)?,
+            mirror: None,
+            planned,
+            reward,
+            starts,
+            tests,
+            tested_at: self.tested_at(&section)?.unwrap_or_else(|| self.tested_at.to_vec()),
+            ends,
+            max_steps: section.whole(&keys::SKILL_MAX_STEPS)?,
+            lessons: if planned { 0 } else { lessons },
+            trials: if planned { 0 } else { trials },
+            learning: self.learning(&section, &link.item, idle)?,
+        };
+        inputs::check(&asked, &skill, world.map_or(0, |world| world.rooms.len()))?;
+        section.0.finish()?;
+        Ok(skill)
     }
-    let lessons = section.whole(&keys::SKILL_LESSONS)?;
-    if lessons > bank {
+
+    /// Checks the table of a mirror image for misspelt keys. They are what the skill is where an arm says
+    /// `mirror = false`; until then `tested_at` alone is used, and returned if it is there.
+    pub(super) fn unused(&self, link: &Link<'_>, idle: &mut Idle) -> Result<Option<Vec<u32>>, ConfigError> {
+        let section = Section(link.item.table()?);
+        for key in keys::ALL.iter().filter(|key| key.path.starts_with("skill.*.")) {
+            section.0.optional(key.name());
+        }
+        self.learning(&section, &link.item, idle)?;
+        let tested_at = self.tested_at(&section)?;
+        section.0.finish()?;
+        Ok(tested_at)
+    }
+
+    fn tested_at(&self, section: &Section<'_>) -> Result<Option<Vec<u32>>, ConfigError> {
+        section.0.optional(keys::SKILL_TESTED_AT.name()).map(|item| item.ascending(keys::MANY)).transpose()
+    }
+
+    /// The place of a skill among the arm's own; below a skill that the arm does not train it has none, and stays.
+    pub(super) fn place(&self, number: usize) -> usize {
+        self.order.iter().position(|skill| *skill == number).unwrap_or(number)
+    }
+
+    fn child(&self, child: Child) -> Child {
+        match child {
+            Child::Skill(number) => Child::Skill(self.place(number)),
+            action => action,
+        }
+    }
+
+    fn lessons(&self, section: &Section<'_>, link: &Link<'_>) -> Result<u32, ConfigError> {
+        let lessons = section.whole(&keys::SKILL_LESSONS)?;
         let item = section.required(&keys::SKILL_LESSONS, "10")?;
-        let hint = format!("the teacher's bank has {bank}; raise `teacher.bank`");
-        return Err(item.error(format!("`{}` is {lessons}, more than there are", item.name), hint));
+        if lessons > 0 && link.skills().next().is_some() {
+            let message = format!("`{}` cannot have lessons: nobody demonstrates skills", link.name);
+            return Err(item.error(message, "set lessons = 0; the skills that it chooses among can be taught"));
+        }
+        if lessons > self.bank {
+            let hint = format!("the teacher's bank has {}; raise `teacher.bank`", self.bank);
+            return Err(item.error(format!("`{}` is {lessons}, more than there are", item.name), hint));
+        }
+        Ok(lessons)
     }
-    let place = over.map_or_else(|| "learning".to_owned(), |over| over.name);
-    let learning = learning::read(&Item { name: place, node: &merged }, idle)?;
-    let skill = Skill {
-        name: name.to_owned(),
-        inputs,
-        children,
-        reward,
-        starts,
-        tests,
-        ends,
-        max_steps: section.whole(&keys::SKILL_MAX_STEPS)?,
-        lessons,
-        trials: section.whole(&keys::SKILL_TRIALS)?,
-        learning,
-    };
-    section.0.finish()?;
-    Ok(skill)
+
+    fn learning(&self, section: &Section<'_>, skill: &Item<'_>, idle: &mut Idle) -> Result<Learning, ConfigError> {
+        let mut merged = self.learning.cloned().unwrap_or_else(|| Node::empty(skill.origin().clone()));
+        let over = section.0.optional("learning");
+        if let Some(over) = &over {
+            over.table()?;
+            merged.merge(over.node.clone());
+        }
+        let name = over.map_or_else(|| "learning".to_owned(), |over| over.name);
+        learning::read(&Item { name, node: &merged }, idle)
+    }
+}
+
+fn planned(section: &Section<'_>, link: &Link<'_>) -> Result<bool, ConfigError> {
+    let planned = section.flag(&keys::SKILL_PLANNED)?;
+    if planned && link.skills().next().is_some() {
+        let item = section.required(&keys::SKILL_PLANNED, "false")?;
+        let message = format!("`{}` chooses among skills and cannot be planned", link.name);
+        return Err(item.error(message, "the planner knows actions only; plan the skills that it chooses among"));
+    }
+    Ok(planned)
 }
 
 /// Makes a complaint, from its message and hint, about the place of a name.
 type Place<'a> = dyn Fn(String, String) -> ConfigError + 'a;
 
-/// A list that is not empty, not too long, and in which nothing is twice.
-fn distinct<'a, T: PartialEq>(
-    item: &Item<'a>,
-    most: usize,
-    read: impl Fn(&Item<'a>) -> Result<T, ConfigError>,
-) -> Result<Vec<T>, ConfigError> {
-    let mut out = Vec::new();
-    for one in item.items()? {
-        let value = read(&one)?;
-        if out.contains(&value) {
-            return Err(one.error(format!("`{}` is there twice", one.text()?), "name each once"));
-        }
-        out.push(value);
-    }
-    if out.is_empty() {
-        return Err(item.error(format!("`{}` is empty", item.name), "name at least one"));
-    }
-    if out.len() > most {
-        return Err(item.error(format!("`{}` has {} entries", item.name, out.len()), format!("at most {most} fit")));
-    }
-    Ok(out)
-}
-
-fn inputs(item: &Item<'_>, world: &World) -> Result<Vec<Input>, ConfigError> {
-    let inputs = distinct(item, MAX_GROUPS, |one| input(one, world))?;
-    let width: u32 = inputs.iter().map(|input| input.width()).sum();
-    if width as usize > MAX_INPUTS {
-        let message = format!("the inputs have {width} values, more than {MAX_INPUTS}");
-        return Err(item.error(message, "sonar, sonar-far and light take 24 each, bumpers 4, compass 2"));
-    }
-    Ok(inputs)
-}
-
-fn input(item: &Item<'_>, world: &World) -> Result<Input, ConfigError> {
-    const NAMES: [&str; 5] = ["sonar", "sonar-far", "light", "bumpers", "compass"];
-    let text = item.text()?;
-    if let Some(scale) = text.strip_prefix("sonar(").and_then(|rest| rest.strip_suffix(')')) {
-        return match scale.trim().parse::<f64>() {
-            Ok(scale) if keys::SONAR_SCALE.holds(scale) => Ok(Input::Sonar { scale: scale as f32 }),
-            _ => {
-                let hint = format!("use a number of inches {}, such as sonar(60)", keys::SONAR_SCALE);
-                Err(item.error(format!("`{scale}` cannot be the scale of the sonar"), hint))
-            }
-        };
-    }
-    match item.choice("inputs", &NAMES)? {
-        0 => Ok(Input::Sonar { scale: keys::SONAR_DEFAULT }),
-        1 => Ok(Input::SonarFar),
-        2 if world.light.is_none() => {
-            Err(item.error("the world has no light to see", "add [light] to the world file, or drop this input"))
-        }
-        2 => Ok(Input::Light),
-        3 => Ok(Input::Bumpers),
-        _ => Ok(Input::Compass),
-    }
-}
-
-fn children(item: &Item<'_>, skill: &str) -> Result<Vec<Action>, ConfigError> {
-    let names = Action::ALL.map(Action::name);
-    distinct(item, MAX_CHILDREN, |one| {
-        let text = one.text()?;
-        match names.iter().position(|name| *name == text) {
-            Some(code) => Ok(Action::ALL[code]),
-            None => {
-                let hint = match super::error::nearest(text, &names) {
-                    Some(best) => format!("did you mean `{best}`?"),
-                    None => format!("allowed are {}; skills as children come with a later version", list(&names)),
-                };
-                Err(one.error(format!("`{text}` is not an action that `{skill}` can choose"), hint))
-            }
-        }
-    })
-}
-
 /// An event that can happen in this world.
-fn event(name: &str, place: &Place<'_>, world: &World) -> Result<Event, ConfigError> {
+fn event(name: &str, place: &Place<'_>, world: Option<&World>) -> Result<Event, ConfigError> {
     let names = Event::ALL.map(Event::name);
     let Some(code) = names.iter().position(|known| *known == name) else {
         return Err(place(format!("`{name}` is not one of the events"), suggest(name, "events", &names)));
     };
-    let lacking = match Event::ALL[code] {
-        Event::Docked if world.charger.is_none() => "charger",
-        Event::PassedDoor if world.doors.is_empty() => "doors",
-        event => return Ok(event),
-    };
-    let message = format!("`{name}` cannot happen: the world has no {lacking}");
-    Err(place(message, format!("add {lacking} to the world file, or drop this event")))
+    match world.and_then(|world| Some((world, lacking(Event::ALL[code], world)?))) {
+        None => Ok(Event::ALL[code]),
+        Some((world, lacking)) => {
+            let message = format!("`{name}` cannot happen: the world `{}` has no {lacking}", world.name);
+            Err(place(message, format!("add {lacking} to the world file, or drop this event")))
+        }
+    }
 }
 
-fn reward(item: &Item<'_>, world: &World) -> Result<[f32; Event::ALL.len()], ConfigError> {
+/// What the world would need for the event to happen there, or none if it can.
+pub(super) fn lacking(event: Event, world: &World) -> Option<&'static str> {
+    match event {
+        Event::Docked if world.charger.is_none() => Some("charger"),
+        Event::PassedDoor if world.doors.is_empty() => Some("doors"),
+        _ => None,
+    }
+}
+
+fn reward(item: &Item<'_>, world: Option<&World>) -> Result<[f32; Event::ALL.len()], ConfigError> {
     let mut reward = [0.0; Event::ALL.len()];
     for (entry, amount) in item.table()?.all() {
         let event = event(&entry.key, &|message, hint| entry.origin.error(message, hint), world)?;
@@ -161,18 +174,19 @@ fn reward(item: &Item<'_>, world: &World) -> Result<[f32; Event::ALL.len()], Con
     Ok(reward)
 }
 
-fn ends(item: &Item<'_>, world: &World) -> Result<u32, ConfigError> {
+fn ends(item: &Item<'_>, world: Option<&World>) -> Result<u32, ConfigError> {
     // A skill may go on until its step limit.
     if item.items()?.is_empty() {
         return Ok(0);
     }
-    let events =
-        distinct(item, Event::ALL.len(), |one| event(one.text()?, &|message, hint| one.error(message, hint), world))?;
+    let most = Event::ALL.len();
+    let events = item.distinct(most, |one| event(one.text()?, &|message, hint| one.error(message, hint), world))?;
     Ok(events.iter().fold(0, |bits, event| bits | event.bit()))
 }
 
 /// The name of a region in which a trial can start.
-fn region(name: &str, place: &Place<'_>, world: &World) -> Result<String, ConfigError> {
+fn region(name: &str, place: &Place<'_>, world: Option<&World>) -> Result<String, ConfigError> {
+    let Some(world) = world else { return Ok(name.to_owned()) };
     let names = world.region_names();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     match world.region_is_empty(name) {
@@ -189,7 +203,7 @@ fn region(name: &str, place: &Place<'_>, world: &World) -> Result<String, Config
 }
 
 /// At least one region with its share.
-fn starts(item: &Item<'_>, world: &World) -> Result<Vec<(String, f32)>, ConfigError> {
+fn starts(item: &Item<'_>, world: Option<&World>) -> Result<Vec<(String, f32)>, ConfigError> {
     if let Value::Text(name) = &item.node.value {
         return Ok(vec![(region(name, &|message, hint| item.error(message, hint), world)?, 1.0)]);
     }

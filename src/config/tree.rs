@@ -6,6 +6,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toml::de::{DeTable, DeValue};
 
+/// Tables that are replaced as a whole: shares of start regions sum to 1, and thresholds belong to the children that
+/// are named beside them.
+const WHOLE: [&str; 2] = ["starts", "applicable"];
+
 /// A text that values come from.
 #[derive(Debug)]
 pub(crate) enum Source {
@@ -148,8 +152,7 @@ impl Node {
         }
     }
 
-    /// Lays `over` on top: tables are merged key by key, anything else is replaced. Shares of start regions are
-    /// replaced as a whole too: they sum to 1.
+    /// Lays `over` on top: tables are merged key by key, anything else is replaced, and [`WHOLE`] ones are too.
     pub(crate) fn merge(&mut self, over: Node) {
         match (&mut self.value, over.value) {
             (Value::Table(below), Value::Table(above)) => {
@@ -157,7 +160,7 @@ impl Node {
                 self.origin.replace_default(over.origin);
                 for entry in above {
                     match below.iter_mut().find(|old| old.key == entry.key) {
-                        Some(old) if entry.key != "starts" => {
+                        Some(old) if !WHOLE.contains(&entry.key.as_str()) => {
                             old.origin.replace_default(entry.origin);
                             old.node.merge(entry.node);
                         }

@@ -173,6 +173,8 @@ fn plan_of(skill: &Skill, world: &World, atlas: &mut Atlas) -> Result<SkillPlan,
             Child::Action(action) => *action as u32,
             Child::Skill(below) => (SKILL_CODE + below) as u32,
         };
+        let image = skill.children.iter().position(|other| *other == child.mirrored());
+        plan.mirror_child[number] = image.unwrap_or(number) as u32;
         plan.thresholded |= u32::from(threshold.is_some()) << number;
     }
     let mut cells_of = |region: &str| {
@@ -261,6 +263,7 @@ fn settings_of(skill: &Skill, arm: &Arm, run_seed: u32, seed: u32) -> Settings {
         taught_always: u32::from(learning.taught_always),
         timeout_terminal: u32::from(learning.timeout_terminal),
         mask_blocked: u32::from(learning.mask_blocked),
+        mirror_replays: u32::from(learning.mirror_replays),
         lessons: skill.lessons,
         trials: skill.trials,
         max_steps: skill.max_steps,

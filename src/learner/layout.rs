@@ -183,6 +183,8 @@ shared! {
         group_width: [u32; MAX_GROUPS],
         /// Word of the atlas at which a sonar group's table stands.
         group_table: [u32; MAX_GROUPS],
+        /// The child that is each child's mirror image.
+        mirror_child: [u32; MAX_CHILDREN],
         /// Code of each child: an action, or `SKILL_CODE` and the skill's number.
         child: [u32; MAX_CHILDREN],
         /// Share of the trials that start in this region or an earlier one.
@@ -261,6 +263,8 @@ shared! {
         timeout_terminal: u32,
         /// 1 where a blocked action is not available on the next step.
         mask_blocked: u32,
+        /// 1 where half of the replayed lessons are seen in a mirror.
+        mirror_replays: u32,
         /// Taught lessons given.
         lessons: u32,
         /// Training trials.
@@ -368,6 +372,8 @@ shared! {
         replay: u32,
         /// 1 where the lesson in replay is a taught one.
         replay_taught: u32,
+        /// 1 where it is seen in a mirror.
+        replay_mirrored: u32,
         /// Word of the bank or of the memory at which the lesson in replay stands.
         replay_lesson: u32,
         /// Steps of the lesson in replay that are still to be learned; 0 where none is.

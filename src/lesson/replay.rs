@@ -7,7 +7,7 @@
 //! A skill over skills may learn at its decisions only: between them rewards are summed with their discount, and
 //! lambda mixes at decisions.
 
-use crate::learner::layout::LESSON_HEADER;
+use crate::learner::layout::{LESSON_HEADER, SkillPlan};
 use crate::learner::memory::{Learner, Scratch};
 use crate::learner::phase::PHASE_FAILED;
 use crate::lesson::record::CUT;
@@ -64,12 +64,14 @@ pub fn lesson_word(learner: &Learner<'_>, offset: u32) -> u32 {
     if learner.cursor.replay_taught == 1 { learner.shared.bank[at] } else { learner.lessons[at] }
 }
 
-/// Opens the replay of the lesson at word `lesson` of the bank (`taught` 1) or of the memory.
+/// Opens the replay of the lesson at word `lesson` of the bank (`taught` 1) or of the memory; `mirrored` 1 for what
+/// would have happened to the mirror image of the robot in the mirror image of the world.
 #[inline(always)]
-pub fn begin_replay(learner: &mut Learner<'_>, lesson: u32, taught: u32) {
+pub fn begin_replay(learner: &mut Learner<'_>, lesson: u32, taught: u32, mirrored: u32) {
     let settings = &learner.settings[learner.cursor.skill as usize];
     learner.cursor.replay_lesson = lesson;
     learner.cursor.replay_taught = taught;
+    learner.cursor.replay_mirrored = mirrored * settings.mirror_replays;
     let steps = lesson_word(learner, 0);
     let end = lesson_word(learner, 1);
     learner.cursor.replay += 1;
@@ -87,6 +89,17 @@ pub fn load_record(learner: &Learner<'_>, scratch: &mut Scratch, step: u32) {
     for word in 0..words {
         scratch.record[word as usize] = lesson_word(learner, offset + word);
     }
+}
+
+/// A set of children, or that of their mirror images.
+#[inline(always)]
+pub fn reflected(skill: &SkillPlan, children: u32, mirrored: bool) -> u32 {
+    let mut bits = 0;
+    for child in 0..skill.children {
+        let image = if mirrored { skill.mirror_child[child as usize] } else { child };
+        bits |= ((children >> child) & 1) << image;
+    }
+    bits
 }
 
 /// A target inside the range that a net can give.
@@ -118,9 +131,11 @@ pub fn replay_step(learner: &mut Learner<'_>, scratch: &mut Scratch, base: u32) 
     let open = learner.cursor.replay_open == 1;
     let step = if open { learner.cursor.replay_left } else { learner.cursor.replay_left - 1 };
     load_record(learner, scratch, step);
-    let child = scratch.record[8] & 0xff;
+    let mirrored = learner.cursor.replay_mirrored == 1;
+    let done = scratch.record[8] & 0xff;
     let choices = (scratch.record[8] >> 16) & 0xff;
-    let allowed = if settings.backup == BACKUP_STEPS { choices } else { (scratch.record[8] >> 8) & 0xff };
+    let offered = if settings.backup == BACKUP_STEPS { choices } else { (scratch.record[8] >> 8) & 0xff };
+    let allowed = reflected(skill, offered, mirrored);
     let reward = f32::from_bits(scratch.record[9]) * settings.value_scale;
     let future = (1.0 - settings.lambda) * learner.cursor.next_best + settings.lambda * learner.cursor.next_return;
     let aim = bounded(reward + settings.gamma * future, settings.target_limit);
@@ -130,7 +145,7 @@ pub fn replay_step(learner: &mut Learner<'_>, scratch: &mut Scratch, base: u32) 
         learner.cursor.next_return = aim;
         learner.cursor.replay_left = step;
     } else {
-        encode(learner.shared, scratch, skill);
+        encode(learner.shared, scratch, skill, mirrored);
         forward(learner.nets, scratch, skill, base);
         let outlook = weigh(scratch, skill.children, allowed, sharpness(settings, learner.cursor.trial));
         if open {
@@ -138,6 +153,7 @@ pub fn replay_step(learner: &mut Learner<'_>, scratch: &mut Scratch, base: u32) 
             learner.cursor.next_best = outlook.best;
             learner.cursor.next_return = outlook.best;
         } else {
+            let child = if mirrored { skill.mirror_child[done as usize] } else { done };
             let taught = settings.taught_always == 1 && learner.cursor.replay_taught == 1;
             let policy = taught || scratch.odds[child as usize] > settings.policy_threshold * outlook.total;
             let stretched = outlook.best + settings.advantage_scale * (aim - outlook.best);

@@ -79,7 +79,7 @@ pub enum RecordError {
         /// The folder.
         path: PathBuf,
         /// The file that differs.
-        file: &'static str,
+        file: String,
     },
     /// The run was interrupted, or is still going on.
     #[error(

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 /// Name of the resolved config in a run folder.
 pub const CONFIG: &str = "config.toml";
-/// Name of the floor plan in a run folder.
+/// Name of the config's own floor plan in a run folder.
 pub const WORLD: &str = "world.toml";
 const LOCK: &str = ".lock";
 const MARKER: &str = ".skilltree";
@@ -33,38 +33,45 @@ pub enum State {
 #[derive(Debug)]
 pub struct RunFolder {
     dir: PathBuf,
+    /// Names of the config and of the world files.
+    given: Vec<String>,
     state: State,
     _lock: File,
 }
 
 impl RunFolder {
-    /// Creates the folder, or opens the one that the same experiment left behind.
+    /// Creates the folder, or opens the one that the same experiment left behind. `worlds` are the names and texts
+    /// of the world files, [`WORLD`] among them.
     ///
     /// # Errors
-    /// If the folder cannot be written, is in use, holds anything else than a run of exactly this config and world, or
-    /// is complete but fails verification. Nothing is overwritten.
-    pub fn open(dir: &Path, config_text: &str, world_text: &str) -> Result<Self, RecordError> {
+    /// If the folder cannot be written, is in use, holds anything else than a run of exactly this config and these
+    /// worlds, or is complete but fails verification. Nothing is overwritten.
+    pub fn open(dir: &Path, config_text: &str, worlds: &[(&str, &str)]) -> Result<Self, RecordError> {
+        let given: Vec<(&str, &str)> = [(CONFIG, config_text)].iter().chain(worlds).copied().collect();
+        check_names(&given)?;
         fs::create_dir_all(dir).map_err(|source| RecordError::Unwritable { path: dir.into(), source })?;
         refuse_foreign(dir)?;
         let lock = lock(dir)?;
         // Once more under the lock: another process may have filled the folder in between.
         refuse_foreign(dir)?;
-        for folder in [dir.to_path_buf(), dir.join(PARTS)] {
-            atomic::remove_leftovers(&folder)?;
+        let folders: BTreeSet<PathBuf> =
+            given.iter().filter_map(|(name, _)| Some(dir.join(name).parent()?.into())).collect();
+        for folder in folders.iter().chain([&dir.join(PARTS)]) {
+            atomic::remove_leftovers(folder)?;
         }
         let started = !part_names(dir)?.is_empty() || dir.join(Manifest::NAME).exists();
         atomic_once(&dir.join(MARKER), format!("skilltree run folder, format {FORMAT}\n").as_bytes())?;
-        for (name, text) in [(CONFIG, config_text), (WORLD, world_text)] {
-            match read_if_there(&dir.join(name))? {
+        for (name, text) in &given {
+            let path = dir.join(name);
+            match read_if_there(&path)? {
                 Some(bytes) if bytes == text.as_bytes() => {}
-                Some(_) => return Err(RecordError::OtherExperiment { path: dir.into(), file: name }),
-                None if started => {
-                    return Err(RecordError::damaged(&dir.join(name), "missing, although results exist"));
-                }
-                None => atomic::write(&dir.join(name), text.as_bytes())?,
+                Some(_) => return Err(RecordError::OtherExperiment { path: dir.into(), file: (*name).to_owned() }),
+                None if started => return Err(RecordError::damaged(&path, "missing, although results exist")),
+                None => write_below(dir, &path, text.as_bytes())?,
             }
         }
-        let mut folder = Self { dir: dir.into(), state: State::Fresh, _lock: lock };
+        let given = given.iter().map(|(name, _)| (*name).to_owned()).collect();
+        let mut folder = Self { dir: dir.into(), given, state: State::Fresh, _lock: lock };
         if dir.join(Manifest::NAME).exists() {
             super::FinishedRun::read(dir)?;
             folder.state = State::Complete;
@@ -145,15 +152,14 @@ impl RunFolder {
             return Err(RecordError::invalid(Manifest::NAME, "the run is already complete"));
         }
         let mut digests = BTreeMap::new();
-        for name in [CONFIG, WORLD] {
+        for name in &self.given {
             let path = self.dir.join(name);
             let digest = FileDigest::of_file(&path).map_err(RecordError::unreadable(&path))?;
-            digests.insert(name.to_owned(), digest);
+            digests.insert(name.clone(), digest);
         }
         let mut folders = BTreeSet::from([self.dir.clone()]);
         for (name, bytes) in files {
-            let reserved = name == Manifest::NAME || name.split('/').next() == Some(PARTS);
-            if !is_plain(&name) || reserved || digests.contains_key(&name) {
+            if !is_free(&name) || digests.contains_key(&name) {
                 return Err(RecordError::invalid(name, "not a free path inside the run folder"));
             }
             let path = self.dir.join(&name);
@@ -205,6 +211,33 @@ pub fn lock(dir: &Path) -> Result<File, RecordError> {
         Err(TryLockError::WouldBlock) => Err(RecordError::Busy { path: dir.into() }),
         Err(TryLockError::Error(source)) => Err(unwritable(source)),
     }
+}
+
+/// Whether a file may have this path: one inside the folder that is not kept for ourselves.
+fn is_free(name: &str) -> bool {
+    is_plain(name) && name != Manifest::NAME && name.split('/').next() != Some(PARTS)
+}
+
+/// The files that a run is made from: each is free and comes once, and one of them is the config's own world.
+fn check_names(given: &[(&str, &str)]) -> Result<(), RecordError> {
+    let names: BTreeSet<&str> = given.iter().map(|(name, _)| *name).collect();
+    if let Some(name) = names.iter().find(|name| !is_free(name)) {
+        return Err(RecordError::invalid(*name, "not a free path inside the run folder"));
+    }
+    if names.len() < given.len() || !names.contains(WORLD) {
+        return Err(RecordError::invalid("world files", format!("one is `{WORLD}`, and each has a name of its own")));
+    }
+    Ok(())
+}
+
+/// Writes a file, and the folder in `dir` that holds it if there is none.
+fn write_below(dir: &Path, path: &Path, bytes: &[u8]) -> Result<(), RecordError> {
+    if let Some(folder) = path.parent().filter(|folder| !folder.exists()) {
+        let failed = |source| RecordError::NotCommitted { path: folder.into(), source };
+        fs::create_dir_all(folder).map_err(failed)?;
+        atomic::sync_folder(dir)?;
+    }
+    atomic::write(path, bytes)
 }
 
 /// A folder is ours if it has the marker, which is the first file written after the lock.

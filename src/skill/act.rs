@@ -3,7 +3,7 @@
 //! The choice is made anew on every primitive step at every level (paper, section VI.A); persistence decides how
 //! free it is.
 
-use crate::learner::layout::{Agent, BASE_WORDS, MAX_CHILDREN, MAX_SKILLS, SKILL_CODE, Settings};
+use crate::learner::layout::{Agent, BASE_WORDS, MAX_CHILDREN, MAX_DEPTH, MAX_SKILLS, SKILL_CODE, Settings};
 use crate::learner::memory::{Scratch, Shared};
 use crate::math::functions::flush;
 use crate::math::rng::{Dice, noise};
@@ -79,7 +79,7 @@ pub fn think(
     if plan.planned > 0 {
         consult(agent, shared, scratch, plan);
     } else {
-        encode(shared, scratch, plan);
+        encode(shared, scratch, plan, plan.mirrored == 1);
         forward(nets, scratch, plan, base);
     }
 }
@@ -101,9 +101,9 @@ pub fn watch(
             think(agent, shared, scratch, settings, nets, base, n);
             let mut best = -2.0;
             for child in 0..shared.skills[n as usize].children as usize {
-                let value = scratch.q[child];
-                best = if value > best { value } else { best };
-                scratch.kept[n as usize * MAX_CHILDREN + child] = value;
+                let worth = scratch.q[child];
+                best = if worth > best { worth } else { best };
+                scratch.kept[n as usize * MAX_CHILDREN + child] = worth;
             }
             scratch.value[n as usize] = best;
         }
@@ -127,10 +127,12 @@ pub fn descend(
     let watched = shared.skills[root as usize].watched;
     let heat = settings[root as usize].child_sharpness;
     let mut code = shared.skills[root as usize].child[child as usize];
-    let mut active = 1 << root;
-    let mut depth = 1;
+    let mut asked = 1 << root;
     let mut last = root;
-    while code >= SKILL_CODE as u32 {
+    for depth in 1..MAX_DEPTH {
+        if code < SKILL_CODE as u32 {
+            break;
+        }
         let n = code - SKILL_CODE as u32;
         let plan = &shared.skills[n as usize];
         if ((watched >> n) & 1) == 1 {
@@ -149,11 +151,10 @@ pub fn descend(
         let chosen = choose(scratch, own, plan.children, found.allowed, heat, false, word);
         commit(agent, n, chosen, found);
         code = plan.child[chosen as usize];
-        active |= 1 << n;
-        depth += 1;
+        asked |= 1 << n;
         last = n;
     }
-    rest(agent, root, active);
+    rest(agent, root, asked);
     agent.masks = settings[last as usize].mask_blocked;
     code
 }

@@ -28,8 +28,8 @@ pub fn consult(agent: &Agent, shared: &Shared, scratch: &mut Scratch, plan: &Ski
     let origin = agent.origin.min(origins - 1);
     let entry = ((origin * rows + row) * columns + column) * TABLE_HEADINGS + heading;
     let word = shared.atlas[table + (TABLE_HEADER + entry) as usize];
-    let value = f32::from_bits(word & 0xffff_fff8);
+    let best = f32::from_bits(word & 0xffff_fff8);
     for child in 0..plan.children {
-        scratch.q[child as usize] = if child == (word & 7) { value } else { value - TABLE_GAP };
+        scratch.q[child as usize] = if child == (word & 7) { best } else { best - TABLE_GAP };
     }
 }

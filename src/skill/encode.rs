@@ -79,15 +79,14 @@ pub fn marked(scratch: &Scratch, skill: &SkillPlan, kind: u32, lane: u32) -> f32
     value
 }
 
-/// Turns the record into the inputs of a skill's nets.
+/// Turns the record, or what a mirror would show of it, into the inputs of a skill's nets.
 #[inline(always)]
-pub fn encode(shared: &Shared, scratch: &mut Scratch, skill: &SkillPlan) {
+pub fn encode(shared: &Shared, scratch: &mut Scratch, skill: &SkillPlan, mirrored: bool) {
     for group in 0..skill.groups as usize {
         let kind = skill.group_kind[group];
         let first = skill.group_first[group] as usize;
         let width = skill.group_width[group];
         let table = skill.group_table[group];
-        let mirrored = skill.mirrored == 1;
         if kind == GROUP_SONAR {
             for lane in 0..RAYS {
                 let ray = if mirrored { (RAYS - lane) % RAYS } else { lane };

@@ -8,8 +8,8 @@ use crate::skill::choose::NO_CHILD;
 use crate::skill::remember::recall;
 use crate::skill::reward::room_of;
 
-/// State of a skill that does not run.
-pub const IDLE: u32 = 255;
+/// State of a skill that does not run: none of its children does.
+pub const IDLE: u32 = NO_CHILD;
 /// Threshold of a child that is always applicable.
 pub const ALWAYS: f32 = -2.0;
 
@@ -34,10 +34,10 @@ pub fn extend(agent: &Agent, world: &WorldPlan, scratch: &mut Scratch, plan: &Sk
     for child in 0..plan.children {
         let code = plan.child[child as usize];
         let known = code >= SKILL_CODE as u32 && ((plan.thresholded >> child) & 1) == 1;
-        let value = if known { scratch.value[(code as usize) - SKILL_CODE] } else { 0.0 };
-        let above = !known || value > settings.threshold[child as usize];
+        let worth = if known { scratch.value[(code as usize) - SKILL_CODE] } else { 0.0 };
+        let above = !known || worth > settings.threshold[child as usize];
         applicable |= if above { 1 << child } else { 0 };
-        scratch.record[VALUE_WORD + child as usize] = value.to_bits();
+        scratch.record[VALUE_WORD + child as usize] = worth.to_bits();
     }
     for child in plan.children as usize..MAX_CHILDREN {
         scratch.record[VALUE_WORD + child] = 0;
@@ -100,9 +100,8 @@ pub fn commit(agent: &mut Agent, n: u32, child: u32, options: Options) {
 
 /// Skills that were not asked at this step no longer run.
 #[inline(always)]
-pub fn rest(agent: &mut Agent, root: u32, active: u32) {
+pub fn rest(agent: &mut Agent, root: u32, asked: u32) {
     for n in 0..root {
-        agent.run[n as usize] = if ((active >> n) & 1) == 1 { agent.run[n as usize] } else { IDLE };
+        agent.run[n as usize] = if ((asked >> n) & 1) == 1 { agent.run[n as usize] } else { IDLE };
     }
-    debug_assert!(NO_CHILD == IDLE, "the low byte of an idle skill's state says that no child runs");
 }

@@ -1,8 +1,10 @@
 //! How much work one dispatch is given: short enough for watchdogs, desktops and drivers that cut loops.
 
 use super::canary::SAFE_TURNS;
-use crate::learner::layout::{LANES, MAX_CHILDREN, RECORD_WORDS, SkillPlan, WorldPlan};
+use crate::learner::layout::{BASE_WORDS, EVENTS, LANES, MAX_CHILDREN, SKILL_CODE, SkillPlan, WorldPlan};
 use crate::learner::memory::Shared;
+use crate::skill::encode::{GROUP_APPLICABLE, GROUP_VALUES};
+use crate::skill::reward::{SIDE_FIRST, SIDE_LAST};
 use std::time::Duration;
 
 /// Duration that dispatches aim at.
@@ -77,24 +79,87 @@ pub fn ceiling(budget: Option<u32>, turns: u32) -> u32 {
 /// rounds of random numbers, the cell's segment list, and three walks over the segments, 32 at a time.
 pub fn step_turns(shared: &Shared) -> u32 {
     let walk = shared.floor.plan.segments.div_ceil(LANES as u32);
-    10 + longest_list(&shared.floor.plan, &shared.atlas) + 3 * walk
+    DRAW + turns(longest_list(&shared.floor.plan, &shared.atlas), 0) + 3 * turns(walk, 0)
 }
 
-/// Loop turns of one invocation in the dearest quantum: the last step of a trial, which senses twice, or a
-/// replayed transition, which runs the nets forwards and one of them backwards.
+/// Loop turns of one invocation in the dearest quantum: a trial step that runs the nets of all watched skills, of the
+/// root and of the skills on the way down to an action, or a replayed transition, which runs the nets forwards and one
+/// of them backwards.
 pub fn quantum_turns(shared: &Shared) -> u32 {
-    let plan = &shared.floor.plan;
-    let nets = shared.skills.iter().map(decision_turns).max().unwrap_or(0);
-    let rows = shared.skills.iter().map(|skill| skill.rows).max().unwrap_or(0);
-    let act = 2 * step_turns(shared) + 2 * (plan.rooms + plan.doors) + 8;
-    let replay = rows + 20 + RECORD_WORDS as u32;
-    nets + act.max(replay)
+    let act = (0..shared.skills.len()).map(|root| act_turns(shared, root)).max().unwrap_or(0);
+    let replay = shared.skills.iter().map(replay_turns).max().unwrap_or(0);
+    1 + act.max(replay)
 }
 
-/// Encoding, all nets forwards, five rounds of sums over the lanes, and the choice.
-fn decision_turns(skill: &SkillPlan) -> u32 {
-    let forward = skill.children * (skill.inputs + 1) + 5 * (skill.children + 1);
-    skill.groups + forward + skill.children + 2 * MAX_CHILDREN as u32
+/// Random numbers of one draw.
+const DRAW: u32 = turns(10, 0);
+
+/// A loop of `rounds`, each of which costs `each` beside its own turn. Where it ends is one more.
+const fn turns(rounds: u32, each: u32) -> u32 {
+    rounds * (each + 1) + 1
+}
+
+/// A trial step of skill `root`: it senses, asks the skills, chooses, moves and notes what that brought about.
+fn act_turns(shared: &Shared, root: usize) -> u32 {
+    let world = &shared.floor.plan;
+    let plan = &shared.skills[root];
+    let rooms = turns(world.rooms, 0);
+    let sense = step_turns(shared) + turns(SIDE_LAST - SIDE_FIRST + 1, 0) + turns(EVENTS as u32, 0);
+    let watched = shared.skills[..root].iter().enumerate().filter(|(n, _)| (plan.watched >> n) & 1 == 1);
+    let watch = watched.map(|(_, plan)| think_turns(plan, world) + turns(plan.children, 0)).sum::<u32>();
+    let choose = think_turns(plan, world) + choice_turns(plan);
+    let execute = rooms + turns(world.doors, 0) + rooms;
+    sense
+        + turns(root as u32, 0)
+        + watch
+        + choose
+        + 1
+        + way_turns(shared, plan, plan.watched)
+        + turns(root as u32, 0)
+        + execute
+}
+
+/// The dearest way from a skill that has chosen down to an action.
+fn way_turns(shared: &Shared, plan: &SkillPlan, watched: u32) -> u32 {
+    let skills = plan.child[..plan.children as usize].iter().filter_map(|code| code.checked_sub(SKILL_CODE as u32));
+    let turns = skills.map(|n| {
+        let below = &shared.skills[n as usize];
+        let known = (watched >> n) & 1 == 1;
+        let think =
+            if known { extend_turns(below, &shared.floor.plan) } else { think_turns(below, &shared.floor.plan) };
+        1 + think + choice_turns(below) + way_turns(shared, below, watched)
+    });
+    turns.max().unwrap_or(0)
+}
+
+/// A transition of skill `plan`: the draws of the lesson, of its number and of the step, and the nets both ways.
+fn replay_turns(plan: &SkillPlan) -> u32 {
+    3 * DRAW + nets_turns(plan) + choice_turns(plan) + turns(plan.rows, 0)
+}
+
+/// Completing the record of a skill over skills.
+fn extend_turns(plan: &SkillPlan, world: &WorldPlan) -> u32 {
+    let high = plan.record_words > BASE_WORDS as u32;
+    if high { turns(plan.children, 0) + turns(world.rooms, 0) } else { 0 }
+}
+
+/// Q-values.
+fn think_turns(plan: &SkillPlan, world: &WorldPlan) -> u32 {
+    extend_turns(plan, world) + if plan.planned > 0 { 0 } else { nets_turns(plan) }
+}
+
+/// Encoding, all nets forwards, and five rounds of sums over the lanes.
+fn nets_turns(plan: &SkillPlan) -> u32 {
+    let walks = |kind: &&u32| **kind == GROUP_VALUES || **kind == GROUP_APPLICABLE;
+    let walks = plan.group_kind[..plan.groups as usize].iter().filter(walks).count() as u32;
+    let encode = turns(plan.groups, 0) + walks * turns(plan.children, 0);
+    let forward = turns(plan.nets, turns(plan.inputs, 0) + turns(plan.outputs, 0));
+    encode + forward + turns(5, turns(plan.children, 0))
+}
+
+/// What may be chosen, and what is: the options, the greatest value, the odds and their sum.
+fn choice_turns(plan: &SkillPlan) -> u32 {
+    2 * turns(plan.children, 0) + 2 * turns(MAX_CHILDREN as u32, 0)
 }
 
 fn longest_list(plan: &WorldPlan, atlas: &[u32]) -> u32 {

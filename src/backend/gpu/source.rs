@@ -45,8 +45,12 @@ const COLLIDE: Part = part!("robot/collide.wgsl");
 const SONAR: Part = part!("robot/sonar.wgsl");
 const LIGHT: Part = part!("robot/light.wgsl");
 const NOISE: Part = part!("robot/noise.wgsl");
+const ACT: Part = part!("skill/act.wgsl");
 const OBSERVE: Part = part!("skill/observe.wgsl");
+const REMEMBER: Part = part!("skill/remember.wgsl");
 const ENCODE: Part = part!("skill/encode.wgsl");
+const CONSULT: Part = part!("skill/consult.wgsl");
+const PERSIST: Part = part!("skill/persist.wgsl");
 const REWARD: Part = part!("skill/reward.wgsl");
 const CHOOSE: Part = part!("skill/choose.wgsl");
 const START: Part = part!("skill/start.wgsl");
@@ -68,8 +72,12 @@ pub const ADVANCE: Kernel = Kernel {
         SONAR,
         LIGHT,
         NOISE,
+        ACT,
         OBSERVE,
+        REMEMBER,
         ENCODE,
+        CONSULT,
+        PERSIST,
         REWARD,
         CHOOSE,
         START,
@@ -93,8 +101,12 @@ pub const EVALUATE: Kernel = Kernel {
         SONAR,
         LIGHT,
         NOISE,
+        ACT,
         OBSERVE,
+        REMEMBER,
         ENCODE,
+        CONSULT,
+        PERSIST,
         REWARD,
         CHOOSE,
         START,

@@ -1,0 +1,97 @@
+//! What a skill chooses among, and how.
+
+use super::error::{ConfigError, suggest};
+use super::keys;
+use super::plan::{Action, Child, Choice, Persistence, Threshold};
+use super::read::{Item, Section, argument};
+use super::tree::Value;
+use crate::learner::layout::MAX_CHILDREN;
+
+/// Reads the children, with where each is written. A skill is numbered by its place in `skills`.
+pub(super) fn read<'a>(item: &Item<'a>, skills: &[&str]) -> Result<Vec<(Child, Item<'a>)>, ConfigError> {
+    let known: Vec<&str> = Action::ALL.iter().map(|action| action.name()).chain(skills.iter().copied()).collect();
+    let children = item.distinct(MAX_CHILDREN, |one| {
+        let text = one.text()?;
+        match known.iter().position(|name| *name == text) {
+            Some(code) if code < Action::ALL.len() => Ok(Child::Action(Action::ALL[code])),
+            Some(code) => Ok(Child::Skill(code - Action::ALL.len())),
+            None => {
+                let hint = suggest(text, "actions and skills", &known);
+                Err(one.error(format!("`{text}` is neither an action nor a skill"), hint))
+            }
+        }
+    })?;
+    Ok(children.into_iter().zip(item.items()?).collect())
+}
+
+/// Reads from what value on each child is applicable.
+pub(super) fn applicable(
+    item: &Item<'_>,
+    children: &[(Child, Item<'_>)],
+) -> Result<Vec<Option<Threshold>>, ConfigError> {
+    let names = children.iter().map(|(_, child)| child.text()).collect::<Result<Vec<_>, _>>()?;
+    let skill = |number: &usize| matches!(children[*number].0, Child::Skill(_));
+    let mut thresholds = vec![None; children.len()];
+    for (entry, value) in item.table()?.all() {
+        match names.iter().position(|name| *name == entry.key) {
+            Some(number) if skill(&number) => thresholds[number] = Some(threshold(&value)?),
+            Some(_) => {
+                let message = format!("`{}` has no threshold: actions always are applicable", entry.key);
+                return Err(entry.origin.error(message, "drop it; only skills among the children have one"));
+            }
+            None => {
+                let skills: Vec<&str> = (0..names.len()).filter(skill).map(|number| names[number]).collect();
+                let hint = suggest(&entry.key, "skills among the children", &skills);
+                return Err(entry.origin.error(format!("`{}` is not among the children", entry.key), hint));
+            }
+        }
+    }
+    Ok(thresholds)
+}
+
+fn threshold(item: &Item<'_>) -> Result<Threshold, ConfigError> {
+    let Value::Text(text) = &item.node.value else { return Ok(Threshold::Fixed(item.number(keys::THRESHOLD)?)) };
+    if text == "learned" {
+        return Ok(Threshold::Learned(keys::PROBABILITY_DEFAULT));
+    }
+    let Some(probability) = argument(text, "learned") else {
+        let hint = format!("use a number {}, \"learned\", or \"learned(0.8)\"", keys::THRESHOLD);
+        return Err(item.error(format!("`{text}` is not a threshold"), hint));
+    };
+    match probability.parse::<f64>() {
+        Ok(value) if keys::PROBABILITY.holds(value) => Ok(Threshold::Learned(value as f32)),
+        _ => {
+            let hint = format!("use a number {}, such as learned(0.8)", keys::PROBABILITY);
+            Err(item.error(format!("`{probability}` cannot be the probability of success"), hint))
+        }
+    }
+}
+
+/// Reads how a child is chosen.
+pub(super) fn choice(section: &Section<'_>) -> Result<Choice, ConfigError> {
+    Ok(match section.choice(&keys::SKILL_CHOICE)? {
+        0 => Choice::Learned,
+        1 => Choice::Random,
+        _ => Choice::Ordered,
+    })
+}
+
+/// Reads how a skill keeps to the chosen child.
+pub(super) fn persistence(section: &Section<'_>) -> Result<Persistence, ConfigError> {
+    let item = section.required(&keys::SKILL_PERSISTENCE, "true")?;
+    let (training, tests) = match &item.node.value {
+        Value::Flag(flag) => (*flag, *flag),
+        Value::Text(text) if text == "training" => (true, false),
+        _ => {
+            let message = format!("`{}` must be true, false or \"training\"", item.name);
+            return Err(item.error(message, "\"training\" keeps to a child in training trials, but not in tests"));
+        }
+    };
+    Ok(Persistence {
+        training,
+        tests,
+        applicability: section.flag(&keys::SKILL_APPLICABILITY)?,
+        interrupt: section.flag(&keys::SKILL_INTERRUPT)?,
+        decision_steps: section.whole(&keys::SKILL_DECISION_STEPS)?,
+    })
+}

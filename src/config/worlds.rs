@@ -1,0 +1,74 @@
+//! The floor plans that a config names, each read once.
+
+use super::error::ConfigError;
+use super::keys;
+use super::plan::PlacedWorld;
+use super::read::Item;
+use super::tree::{Node, Value};
+use crate::world;
+use std::path::{Path, PathBuf};
+
+/// World files read so far.
+#[derive(Debug)]
+pub(super) struct Worlds<'a> {
+    /// The config file, from whose folder paths start.
+    config: &'a Path,
+    /// Where each of them lies, without symbolic links and detours.
+    paths: Vec<PathBuf>,
+    /// The worlds, in the order in which they were named first.
+    pub(super) placed: Vec<PlacedWorld>,
+}
+
+impl<'a> Worlds<'a> {
+    pub(super) fn new(config: &'a Path) -> Self {
+        Self { config, paths: Vec::new(), placed: Vec::new() }
+    }
+
+    /// Index of the world whose file `item` names; reads the file if it is new.
+    pub(super) fn place(&mut self, item: &Item<'_>) -> Result<usize, ConfigError> {
+        let path = self.config.parent().unwrap_or(Path::new("")).join(item.text()?);
+        let real = std::fs::canonicalize(&path).unwrap_or_else(|_| path.clone());
+        if let Some(index) = self.paths.iter().position(|known| *known == real) {
+            return Ok(index);
+        }
+        let text = std::fs::read_to_string(&path).map_err(|error| {
+            let error = ConfigError::unreadable(&path, "world file", &error);
+            let hint =
+                format!("it was looked for at {}; the path starts from the config file's folder", path.display());
+            item.error(error.message(), hint)
+        })?;
+        self.placed.push(PlacedWorld { world: world::parse(&text, &path)?, text, file: self.free_name(&path) });
+        self.paths.push(real);
+        Ok(self.placed.len() - 1)
+    }
+
+    /// A name in the run folder that no other world has; the config's own has the same in every folder.
+    fn free_name(&self, path: &Path) -> String {
+        if self.placed.is_empty() {
+            return "world.toml".to_owned();
+        }
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        // Run folders take no other characters, and nothing hidden.
+        let plain = |c: char| if c.is_ascii_alphanumeric() || ".-_+=".contains(c) { c } else { '-' };
+        let stem: String = stem.trim_start_matches('.').chars().map(plain).collect();
+        let stem = if stem.is_empty() { "world" } else { stem.as_str() };
+        // Some disks do not tell capitals from small letters.
+        let taken = |name: &String| self.placed.iter().any(|other| other.file.eq_ignore_ascii_case(name));
+        let numbered = (2_usize..).map(|number| format!("worlds/{stem}-{number}.toml"));
+        let mut names = std::iter::once(format!("worlds/{stem}.toml")).chain(numbered);
+        names.find(|name| !taken(name)).unwrap_or_default()
+    }
+
+    /// Gives the worlds in a table of arms or alterations the names that they have in a run folder.
+    pub(super) fn rename(&mut self, group: &mut Node) -> Result<(), ConfigError> {
+        let Value::Table(entries) = &mut group.value else { return Ok(()) };
+        for entry in entries {
+            let Some(node) = entry.node.get(keys::WORLD.name()) else { continue };
+            let index = self.place(&Item { name: keys::WORLD.name().to_owned(), node })?;
+            let file = Value::Text(self.placed[index].file.clone());
+            let renamed = Node { value: file, origin: node.origin.clone() };
+            entry.node.put(keys::WORLD.name(), renamed);
+        }
+        Ok(())
+    }
+}
