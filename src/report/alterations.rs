@@ -44,5 +44,6 @@ fn row(series: &Series, altered: &Altered) -> Value {
 /// What each alteration alters, as the resolved config says it.
 pub fn meanings(config: &toml::Table) -> Vec<(String, String)> {
     let table = config.get("alter").and_then(toml::Value::as_table);
-    table.into_iter().flatten().map(|(name, value)| (name.clone(), value.to_string())).collect()
+    let bare = |value: &toml::Value| value.to_string().trim_matches(['{', '}', ' ']).to_owned();
+    table.into_iter().flatten().map(|(name, value)| (name.clone(), bare(value))).collect()
 }

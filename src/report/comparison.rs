@@ -53,10 +53,9 @@ pub fn median_actions(series: &Series) -> f64 {
 /// Each seed's last test within a budget of actions; a seed that had none by then counts as one that achieves nothing.
 pub fn within(series: &Series, budget: f64) -> Vec<Score> {
     let last = |seed: usize| {
-        let tests = series.cells.iter().map(|cell| cell.scores[seed]);
-        let nothing = Score { episodes: 1, ..Score::default() };
-        let seed = series.last().scores[seed].seed;
-        tests.filter(|score| f64::from(score.actions) <= budget).last().unwrap_or(Score { seed, ..nothing })
+        let mut tests = series.cells.iter().map(|cell| cell.scores[seed]);
+        let nothing = Score { seed: series.last().scores[seed].seed, episodes: 1, ..Score::default() };
+        tests.rfind(|score| f64::from(score.actions) <= budget).unwrap_or(nothing)
     };
     (0..series.last().scores.len()).map(last).collect()
 }

@@ -115,10 +115,10 @@ impl Layout {
             let bottom = 64.0 + LABEL_ROOM * rows as f64 + NOTE_ROOM * figure.notes.len() as f64;
             return Self {
                 width: 470.0,
-                height: 290.0 + bottom,
+                height: 298.0 + bottom,
                 left: 66.0,
                 right: 16.0,
-                top: 54.0,
+                top: 62.0,
                 bottom,
                 title: 15.0,
                 subtitle: 11.5,

@@ -142,13 +142,27 @@ pub fn budget(comparison: &Comparison<'_>) -> Vec<Drawing> {
     pairs.collect::<Vec<_>>().into_par_iter().map(|measure| draw_budget(comparison, &shown, &measure)).collect()
 }
 
+/// What a series is paid for a success, if it is paid for nothing else.
+fn pay(series: &Series) -> Option<f64> {
+    let scores = || series.cells.iter().flat_map(|cell| &cell.scores);
+    let amount = scores().find(|score| score.successes > 0).map_or(0.0, |score| score.reward / score.successes as f64);
+    scores().all(|score| score.reward == amount * score.successes as f64).then_some(amount)
+}
+
+/// Whether two series' rewards can be drawn on one axis: punishment would stretch it.
+fn comparable(series: &Series, other: &Series) -> bool {
+    pay(other).is_none() || pay(series).is_some_and(|amount| amount == 0.0 || Some(amount) == pay(other))
+}
+
 fn draw_budget(comparison: &Comparison<'_>, shown: &[&Series], measure: &Measure) -> Drawing {
-    let curves: Vec<Curve> = shown.iter().map(|series| curve(series, measure)).collect();
+    let drawn = shown.iter().filter(|series| measure.percent || comparable(series, shown[0]));
+    let curves: Vec<Curve> = drawn.map(|series| curve(series, measure)).collect();
     let of = if measure.percent { "Success" } else { "Reinforcement" };
     let mut notes = vec![format!("Mean over {}; bands: 95% bootstrap interval.", seeds(count(shown)))];
     let all = comparison.monolithic.len() + 1;
-    if all > shown.len() {
-        notes.push(format!("The first {} of {all} arms.", shown.len()));
+    if all > curves.len() {
+        let why = if measure.percent { "" } else { "; arms that are punished are left out" };
+        notes.push(format!("{} of {all} arms{why}.", curves.len()));
     }
     let bound = comparison.skill.bound(&shown[0].arm);
     let figure = Figure {

@@ -9,9 +9,11 @@ use plotters::style::RGBColor;
 const MARGIN: f64 = 34.0;
 const TOP: f64 = 62.0;
 const BOTTOM: f64 = 44.0;
-/// Points that the longer side of the floor takes.
-const LONGER_SIDE: f64 = 560.0;
-/// Shortest width that holds the headings.
+/// Points that the longer side of a large floor takes.
+const LARGE: f64 = 560.0;
+/// The same of one of three side by side.
+pub(super) const SMALL: f64 = 340.0;
+/// Shortest width that holds the headings of a large floor.
 const NARROWEST: f64 = 440.0;
 
 const SOLID: RGBColor = RGBColor(0xc8, 0xc8, 0xc8);
@@ -25,7 +27,7 @@ const ROOM: RGBColor = RGBColor(0xb4, 0xb4, 0xb4);
 pub fn draw_world(world: &World) -> String {
     let ring = if world.light.is_some() { " Dashed: range of the light." } else { "" };
     let subtitle = format!("{} by {} inches. Arrows: named places.{ring}", world.size.x, world.size.y);
-    let mut floor = Floor::new(world, &format!("Floor plan: {}", world.name), &subtitle, 0.0);
+    let mut floor = Floor::new(world, &format!("Floor plan: {}", world.name), &subtitle, (LARGE, 0.0));
     if let Some(light) = &world.light {
         floor.range(world, light);
     }
@@ -43,7 +45,7 @@ pub fn draw_world(world: &World) -> String {
 /// Draws 24 sonar rays of the measured lengths around the robot (Figure 1b).
 pub fn draw_sonar(world: &World, reading: &PlaceReading) -> String {
     let subtitle = "24 noise-free sonar readings, every 15 degrees from the heading, drawn to scale.";
-    let mut floor = Floor::new(world, &format!("Sonar at {}", reading.place), subtitle, 0.0);
+    let mut floor = Floor::new(world, &format!("Sonar at {}", reading.place), subtitle, (LARGE, 0.0));
     floor.solids(world);
     let pose = pose(reading);
     for (i, &length) in reading.sonar.iter().enumerate() {
@@ -60,7 +62,7 @@ pub fn draw_light(world: &World, reading: &PlaceReading) -> String {
     let lit = reading.light.iter().filter(|&&bit| bit != 0).count();
     let subtitle =
         format!("24 light bearings, every 15 degrees from the heading: {lit} lit (filled), the others dark.");
-    let mut floor = Floor::new(world, &format!("Light at {}", reading.place), &subtitle, 0.0);
+    let mut floor = Floor::new(world, &format!("Light at {}", reading.place), &subtitle, (LARGE, 0.0));
     floor.solids(world);
     let pose = pose(reading);
     for (i, &bit) in reading.light.iter().enumerate() {
@@ -117,13 +119,14 @@ pub(super) struct Floor {
 }
 
 impl Floor {
-    /// A surface with `below` points to spare under the key.
-    pub(super) fn new(world: &World, title: &str, subtitle: &str, below: f64) -> Self {
+    /// A surface of [`LARGE`] or [`SMALL`] size, with `below` points to spare under the key.
+    pub(super) fn new(world: &World, title: &str, subtitle: &str, (side, below): (f64, f64)) -> Self {
         let (width, height) = (f64::from(world.size.x), f64::from(world.size.y));
-        let scale = LONGER_SIDE / width.max(height).max(1.0);
-        let size = ((width * scale + 2.0 * MARGIN).max(NARROWEST), height * scale + TOP + BOTTOM + below);
+        let scale = side / width.max(height).max(1.0);
+        let size =
+            ((width * scale + 2.0 * MARGIN).max(NARROWEST * side / LARGE), height * scale + TOP + BOTTOM + below);
         let mut canvas = Canvas::new(size.0, size.1, title);
-        canvas.text(title, (MARGIN, 22.0), 18.0, INK, Anchor::Start);
+        canvas.text(title, (MARGIN, 22.0), if side < LARGE { 14.5 } else { 18.0 }, INK, Anchor::Start);
         canvas.text(subtitle, (MARGIN, 44.0), 11.5, GREY, Anchor::Start);
         Self { canvas, scale, left: (size.0 - width * scale) / 2.0, bottom: TOP + height * scale, size }
     }

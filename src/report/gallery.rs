@@ -54,11 +54,11 @@ fn chosen<'a>(trajectories: &'a [Trajectory], leaders: &[&str]) -> Vec<&'a Traje
         }
     }
     arms.sort_by_key(|arm| leaders.iter().position(|leader| leader == arm).unwrap_or(leaders.len()));
-    let of_arm = |arm: &&str| {
-        let arm = *arm;
-        trajectories.iter().filter(move |trajectory| trajectory.arm == arm)
-    };
-    arms.iter().take(ARMS).flat_map(of_arm).collect()
+    arms.truncate(ARMS);
+    let mut chosen: Vec<&Trajectory> =
+        trajectories.iter().filter(|trajectory| arms.contains(&trajectory.arm.as_str())).collect();
+    chosen.sort_by_key(|trajectory| arms.iter().position(|arm| *arm == trajectory.arm));
+    chosen
 }
 
 /// The content of a result file that a run may lack.

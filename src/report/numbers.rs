@@ -24,6 +24,11 @@ pub fn percent(share: f64) -> String {
     format!("{:.1}%", 100.0 * share)
 }
 
+/// A limit in percent, without needless digits.
+pub fn limit(share: f64) -> String {
+    format!("{}%", number(100.0 * share))
+}
+
 /// An interval of shares, in percent.
 pub fn percent_range(interval: Interval) -> String {
     format!("[{:.1}, {:.1}]", 100.0 * interval.low, 100.0 * interval.high)

@@ -78,12 +78,20 @@ fn claim_row(claim: &Claim) -> Value {
     context! {
         number => claim.number,
         says => claim.says,
-        figures => claim.figures.as_slice(),
+        figures => claim.figures.iter().map(|figure| with_code(figure)).collect::<Vec<_>>(),
         seeds => claim.seeds,
         verdict => claim.verdict.words(),
         class => class,
-        why => claim.why.as_str(),
+        why => with_code(&claim.why),
     }
+}
+
+/// Text in which names stand between backticks, as HTML.
+fn with_code(text: &str) -> Value {
+    let plain = |part: &str| part.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+    let part =
+        |(i, part): (usize, &str)| if i % 2 == 1 { format!("<code>{}</code>", plain(part)) } else { plain(part) };
+    Value::from_safe_string(text.split('`').enumerate().map(part).collect())
 }
 
 fn comparison_part(comparison: &Comparison<'_>, results: &Results, of: &impl Fn(&Section) -> Vec<Value>) -> Value {
@@ -97,7 +105,7 @@ fn comparison_part(comparison: &Comparison<'_>, results: &Results, of: &impl Fn(
         few => figure2::PAPER_SEEDS,
         averages => figure2::averages(comparison, &results.trainings),
         budget => of(&Section::Budget),
-        rooms => shown.iter().map(|(_, name)| *name).collect::<Vec<_>>(),
+        rooms => shown.iter().map(|(_, name)| (*name).to_owned()).collect::<Vec<_>>(),
         by_room => rooms::table(comparison, &shown),
         bound => bound.map(|bound| rooms::bound(bound, &shown)),
         overall => bound.map(|bound| percent(bound.score.success())),
@@ -153,6 +161,7 @@ fn moments(series: &Series) -> Vec<&Cell> {
 fn row(label: &str, cell: &Cell) -> Value {
     let success = cell.values(Score::success);
     let steps = cell.values(Score::steps_per_trial);
+    let returned = cell.values(Score::return_per_trial);
     let total = |of: fn(&Score) -> u64| cell.scores.iter().map(of).sum::<u64>();
     context! {
         arm => label,
@@ -168,7 +177,7 @@ fn row(label: &str, cell: &Cell) -> Value {
         failing => percent(share_below(&success, 0.5)),
         steps => with(mean(&steps), bootstrap(&steps, mean, TABLE_RESAMPLES), 1),
         collisions => format!("{:.4}", mean(&cell.values(Score::collisions_per_step))),
-        returned => format!("{:.2}", mean(&cell.values(Score::return_per_trial))),
+        returned => with(mean(&returned), bootstrap(&returned, mean, TABLE_RESAMPLES), 2),
     }
 }
 

@@ -4,7 +4,7 @@ use super::comparison::Comparison;
 use super::curves::{self, Curve, Figure, Point};
 use super::figures::{Drawing, SUCCESS, Section, file_word};
 use super::numbers::{percent, percent_with, seeds};
-use super::statistics::{BAND_RESAMPLES, TABLE_RESAMPLES, bootstrap, mean, quantile, sorted};
+use super::statistics::{BAND_RESAMPLES, Statistic, TABLE_RESAMPLES, bootstrap, mean, quantile, sorted};
 use super::summary::{Bound, Cell, Score, Series};
 use minijinja::{Value, context};
 use rayon::prelude::*;
@@ -69,8 +69,8 @@ pub fn low_quantile(sorted: &[f64]) -> f64 {
 }
 
 /// The tests of an arm that the table shows: the paper's moments for the leaders, and the last one.
-fn moments<'a>(series: &'a Series, leader: bool) -> Vec<&'a Cell> {
-    let early = MOMENTS.iter().filter(|_| leader).map(|trials| series.nearest(*trials));
+fn moments(series: &Series, leader: bool) -> Vec<&Cell> {
+    let early = MOMENTS.iter().filter(|_| leader).filter_map(|trials| series.near(*trials));
     let mut cells: Vec<&Cell> = early.chain([series.last()]).collect();
     cells.dedup_by_key(|cell| cell.trials);
     cells
@@ -90,7 +90,7 @@ pub fn table(comparison: &Comparison<'_>, rooms: &[(usize, &str)]) -> Vec<Value>
 }
 
 fn row(series: &Series, cell: &Cell, rooms: &[(usize, &str)]) -> Value {
-    let shown = |values: &[f64], statistic| {
+    let shown = |values: &[f64], statistic: Statistic| {
         let sorted = sorted(values);
         if sorted.is_empty() {
             return "no tests".to_owned();

@@ -132,6 +132,11 @@ impl Series {
         self.cells.iter().min_by_key(|cell| cell.trials.abs_diff(trials)).unwrap_or_else(|| self.last())
     }
 
+    /// The cell nearest to a number of trials, if it is within a quarter of it.
+    pub fn near(&self, trials: u32) -> Option<&Cell> {
+        Some(self.nearest(trials)).filter(|cell| 4 * cell.trials.abs_diff(trials) <= trials)
+    }
+
     /// Per seed, the training trials at the first test with at least this success; none if no test reached it. A seed
     /// without a number is censored, not dropped: it would have needed more than the last test's trials.
     pub fn trials_to(&self, success: f64) -> Vec<Option<u32>> {

@@ -1,18 +1,18 @@
 //! Example trials drawn in the floor plan, coloured by the child that drove.
 
-use super::canvas::{Anchor, GREY, INK, text_width};
+use super::canvas::{Anchor, GREY, INK};
 use super::curves::COLORS;
-use super::floor::Floor;
+use super::floor::{Floor, SMALL};
 use crate::record::{Trajectory, TrajectoryPoint};
 use crate::world::{Pose, World};
 use glam::Vec2;
 use plotters::style::RGBColor;
 
-const WIDTH: f64 = 3.0;
+const WIDTH: f64 = 2.4;
 /// A piece of the way begins with a dot, which shows turns on the spot too.
-const DOT: f64 = 3.2;
-const LEGEND_ROOM: f64 = 20.0;
-const LEGEND_TEXT: f64 = 12.5;
+const DOT: f64 = 2.6;
+const LEGEND_ROOM: f64 = 18.0;
+const LEGEND_TEXT: f64 = 12.0;
 const GHOST: RGBColor = RGBColor(0x88, 0x88, 0x88);
 
 /// A stretch of a trial that one child drove.
@@ -42,11 +42,11 @@ pub fn draw(world: &World, trajectory: &Trajectory) -> String {
     let steps = trajectory.points.len().saturating_sub(1);
     let end = if trajectory.achieved { "goal achieved" } else { "goal not achieved" };
     let title = format!("{}: {} from {}", trajectory.arm, trajectory.skill, trajectory.place);
-    let subtitle = format!("Greedy, seed {}: {steps} steps, {end}. A dot: another child takes over.", trajectory.seed);
+    let subtitle = format!("{steps} steps, {end} (seed {})", trajectory.seed);
     let used = |child: &u32| trajectory.points.iter().take(steps).any(|point| point.child == *child);
     let shown: Vec<u32> = (0..trajectory.children.len() as u32).filter(used).collect();
-    let rows = shown.len().div_ceil(2) + 1;
-    let mut floor = Floor::new(world, &title, &subtitle, LEGEND_ROOM * rows as f64);
+    let rows = shown.len().div_ceil(2);
+    let mut floor = Floor::new(world, &title, &subtitle, (SMALL, LEGEND_ROOM * rows as f64));
     floor.solids(world);
     let pose = |point: &TrajectoryPoint| Pose { x: point.x, y: point.y, heading: point.heading };
     if let (Some(first), Some(last)) = (trajectory.points.first(), trajectory.points.last()) {
@@ -76,11 +76,9 @@ fn mark(floor: &mut Floor, pose: &Pose, text: &str, color: RGBColor) {
 }
 
 fn legend(floor: &mut Floor, trajectory: &Trajectory, shown: &[u32]) {
-    let (left, top) = (floor.left, floor.bottom + 52.0);
-    floor.canvas.text("who drives:", (left, top), LEGEND_TEXT, GREY, Anchor::Start);
-    let indent = text_width("who drives:", LEGEND_TEXT) + 10.0;
+    let (left, top) = (floor.left, floor.bottom + 48.0);
     for (number, &child) in shown.iter().enumerate() {
-        let x = left + indent + 170.0 * (number % 2) as f64;
+        let x = left + 140.0 * (number % 2) as f64;
         let y = top + LEGEND_ROOM * (number / 2) as f64;
         floor.canvas.line(&[(x, y), (x + 22.0, y)], color(child), WIDTH);
         floor.canvas.disc((x, y), DOT, color(child));

@@ -1,7 +1,7 @@
 //! Claims on elementary skills: section V.
 
 use super::{Estimate, Found, MAIN, Rule, Verdict, at};
-use crate::report::numbers::{number, percent};
+use crate::report::numbers::{limit, number};
 use crate::report::statistics::sorted;
 use crate::report::summary::Score;
 
@@ -27,10 +27,10 @@ pub(super) const UNTAUGHT: Rule = Rule {
         format!(
             "Holds if {} to {} of the seeds achieve less than {} of their tests after {UNTAUGHT_TRIALS} trials, and the \
              median of the other seeds needs at least {TAUGHT_TRIALS} trials to {}; partly if only one of the two.",
-            percent(FAILING.0),
-            percent(FAILING.1),
-            percent(FAILED),
-            percent(LEARNED),
+            limit(FAILING.0),
+            limit(FAILING.1),
+            limit(FAILED),
+            limit(LEARNED),
         )
     },
     judge: |evidence| {
@@ -68,8 +68,8 @@ pub(super) const TAUGHT: Rule = Rule {
     rule: || {
         format!(
             "Holds from a mean success of {} after {TAUGHT_TRIALS} trials on, partly from {} on.",
-            percent(VERY_GOOD),
-            percent(GOOD)
+            limit(VERY_GOOD),
+            limit(GOOD)
         )
     },
     judge: |evidence| {
@@ -90,8 +90,8 @@ pub(super) const OTHER_SKILLS: Rule = Rule {
         format!(
             "Holds from a mean success of `pass-door` of {} on, with a return of `follow-right` of at least {} of the \
              planner's; partly if only one of the two.",
-            percent(VERY_GOOD),
-            percent(FOLLOWING)
+            limit(VERY_GOOD),
+            limit(FOLLOWING)
         )
     },
     judge: |evidence| {

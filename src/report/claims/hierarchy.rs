@@ -1,7 +1,7 @@
 //! Claims on the hierarchy, its two rules and its learning: sections I, VI and VII.
 
 use super::{Estimate, Found, MAIN, Rule, Verdict, at};
-use crate::report::numbers::percent;
+use crate::report::numbers::limit;
 use crate::report::summary::Score;
 
 /// The paper's early moment, and success from rooms A and C that is good then.
@@ -25,14 +25,14 @@ pub(super) const EARLY: Rule = Rule {
         format!(
             "After {EARLY_TRIALS} trials: holds from a mean success of {} from A and {} from C on, partly if only one \
              of the two.",
-            percent(EARLY_A),
-            percent(EARLY_C)
+            limit(EARLY_A),
+            limit(EARLY_C)
         )
     },
     judge: |evidence| {
         let cell = at(evidence.root(MAIN)?, EARLY_TRIALS)?;
-        let a = Estimate::new(&evidence.from_room(cell, "A")?);
-        let c = Estimate::new(&evidence.from_room(cell, "C")?);
+        let a = Estimate::new(&evidence.success_from(cell, "A")?);
+        let c = Estimate::new(&evidence.success_from(cell, "C")?);
         Ok(Found {
             figures: vec![
                 format!("{} from A", a.share()),
@@ -50,7 +50,7 @@ pub(super) const NEARLY_OPTIMAL: Rule = Rule {
         format!(
             "After {LATE_TRIALS} trials: holds if success is at least {} of the planner's from every room, partly if \
              only over all rooms.",
-            percent(NEARLY)
+            limit(NEARLY)
         )
     },
     judge: |evidence| {
@@ -68,7 +68,7 @@ pub(super) const NEARLY_OPTIMAL: Rule = Rule {
         let mut everywhere = true;
         for (room, planner) in bound.rooms.iter().enumerate().filter(|(_, planner)| planner.successes > 0) {
             let name = &evidence.summary.rooms[room];
-            let (text, near) = share(&evidence.from_room(cell, name)?, planner.success());
+            let (text, near) = share(&evidence.success_from(cell, name)?, planner.success());
             figures.push(format!("{text} from {name}"));
             everywhere &= near;
         }
@@ -87,7 +87,7 @@ pub(super) const PERSISTENCE: Rule = Rule {
         format!(
             "Last tests, same seeds: holds if `no-persistence` achieves at least {} less than `{MAIN}` and the interval \
              lies above 0, partly if it only lies above 0.",
-            percent(POOR)
+            limit(POOR)
         )
     },
     judge: |evidence| {
@@ -97,7 +97,11 @@ pub(super) const PERSISTENCE: Rule = Rule {
         } else {
             Verdict::DoesNotHold
         };
-        Ok(Found { figures: vec![format!("`{MAIN}` leads by {}", loss.points())], seeds: loss.seeds, verdict })
+        Ok(Found {
+            figures: vec![format!("`{MAIN}` minus `no-persistence`: {}", loss.points())],
+            seeds: loss.seeds,
+            verdict,
+        })
     },
 };
 
@@ -109,7 +113,7 @@ pub(super) const THRESHOLDS: Rule = Rule {
              `{EXCLUDING}` achieves less with an interval above 0; partly if only one of the two, or the second is not \
              there.",
             UNCRITICAL.map(|arm| format!("`{arm}`")).join(", "),
-            percent(SAME)
+            limit(SAME)
         )
     },
     judge: |evidence| {
@@ -118,9 +122,9 @@ pub(super) const THRESHOLDS: Rule = Rule {
             return Err(format!("There is none of the arms {}.", UNCRITICAL.map(|arm| format!("`{arm}`")).join(", ")));
         };
         let mut figures: Vec<String> =
-            there.iter().map(|(arm, lead)| format!("`{MAIN}` leads `{arm}` by {}", lead.points())).collect();
+            there.iter().map(|(arm, lead)| format!("`{MAIN}` minus `{arm}`: {}", lead.points())).collect();
         let excluded = evidence.main_minus(EXCLUDING).ok();
-        figures.extend(excluded.iter().map(|lead| format!("`{EXCLUDING}` by {}", lead.points())));
+        figures.extend(excluded.iter().map(|lead| format!("minus `{EXCLUDING}`: {}", lead.points())));
         let same = there.iter().all(|(_, lead)| lead.mean.abs() <= SAME);
         let worse = excluded.is_some_and(|lead| lead.interval.low > 0.0);
         Ok(Found { figures, seeds: first.seeds, verdict: Verdict::of(&[same, worse]) })
@@ -137,7 +141,7 @@ pub(super) const TD_LAMBDA: Rule = Rule {
     },
     judge: |evidence| {
         let lead = evidence.main_minus("td0")?;
-        let figures = vec![format!("`{MAIN}` leads by {}", lead.points())];
+        let figures = vec![format!("`{MAIN}` minus `td0`: {}", lead.points())];
         Ok(Found { figures, seeds: lead.seeds, verdict: super::lead(&lead) })
     },
 };

@@ -162,7 +162,7 @@ impl<'a> Evidence<'a> {
     }
 
     /// Success of every seed that was tested from a room.
-    fn from_room(&self, cell: &Cell, room: &str) -> Result<Vec<f64>, String> {
+    fn success_from(&self, cell: &Cell, room: &str) -> Result<Vec<f64>, String> {
         let index = self.summary.room(room).filter(|&room| !cell.rooms[room].is_empty());
         let index = index.ok_or_else(|| format!("There are no tests from room {room}."))?;
         Ok(super::rooms::success(cell, index))
@@ -175,11 +175,9 @@ impl<'a> Evidence<'a> {
     }
 }
 
-/// The test nearest to a number of trials, if it is within a quarter of it.
+/// The test near a number of trials.
 fn at(series: &Series, trials: u32) -> Result<&Cell, String> {
-    let cell = series.nearest(trials);
-    let lacking = || format!("The arm `{}` has no test near {trials} trials.", series.arm);
-    (4 * cell.trials.abs_diff(trials) <= trials).then_some(cell).ok_or_else(lacking)
+    series.near(trials).ok_or_else(|| format!("The arm `{}` has no test near {trials} trials.", series.arm))
 }
 
 /// A mean over seeds.

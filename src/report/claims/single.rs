@@ -2,7 +2,7 @@
 
 use super::{Estimate, Found, MAIN, Rule, Verdict, difference};
 use crate::report::comparison::SINGLE;
-use crate::report::numbers::{percent, percent_with};
+use crate::report::numbers::{limit, percent_with};
 use crate::report::statistics::TABLE_RESAMPLES;
 use crate::report::summary::Score;
 use crate::report::training::{self, Tally, pooled};
@@ -22,12 +22,12 @@ pub(super) const FAILS_FROM_AFAR: Rule = Rule {
         format!(
             "Holds if the success of `{SINGLE}` at its last test is below {}, the interval's upper end counted, from B \
              and from C; partly if only from one.",
-            percent(FAILS)
+            limit(FAILS)
         )
     },
     judge: |evidence| {
         let cell = evidence.root(SINGLE)?.last();
-        let rooms = ["B", "C"].map(|room| evidence.from_room(cell, room).map(|values| Estimate::new(&values)));
+        let rooms = ["B", "C"].map(|room| evidence.success_from(cell, room).map(|values| Estimate::new(&values)));
         let [b, c] = rooms;
         let (b, c) = (b?, c?);
         Ok(Found {
@@ -47,7 +47,7 @@ pub(super) const COLLIDES: Rule = Rule {
         format!(
             "Collisions over steps of all training trials of `{SINGLE}`: holds if the interval lies above {}, partly if \
              only the mean does.",
-            percent(OFTEN)
+            limit(OFTEN)
         )
     },
     judge: |evidence| {
@@ -74,7 +74,7 @@ pub(super) const PUNISHED: Rule = Rule {
         format!(
             "Last tests: holds if `{PENALTY}` achieves more than `{SINGLE}` on the same seeds, less than {}, and less \
              than `{MAIN}`; partly if poor as that, but not better.",
-            percent(POOR)
+            limit(POOR)
         )
     },
     judge: |evidence| {
@@ -86,8 +86,8 @@ pub(super) const PUNISHED: Rule = Rule {
         Ok(Found {
             figures: vec![
                 format!("{} achieved", success.share()),
-                format!("{} to `{SINGLE}`", gain.points()),
-                format!("`{MAIN}` leads by {}", lead.points()),
+                format!("minus `{SINGLE}`: {}", gain.points()),
+                format!("`{MAIN}` minus it: {}", lead.points()),
             ],
             seeds: success.seeds,
             verdict: match poor {

@@ -3,7 +3,7 @@
 use super::{Estimate, Found, MAIN, Rule, Verdict, difference, lead};
 use crate::report::alterations::differences;
 use crate::report::comparison::{Comparison, median_actions, within};
-use crate::report::numbers::{number, percent};
+use crate::report::numbers::{limit, number, percent};
 use crate::report::statistics::mean;
 use crate::report::summary::{Score, Series};
 
@@ -33,7 +33,7 @@ pub(super) const EQUAL_BUDGET: Rule = Rule {
         let (other, (budget, own, others)) = best.ok_or("There is no arm without skills below its root.")?;
         let gain = difference(&own, &others)?;
         let figures = vec![
-            format!("{} to `{}`", gain.points(), other.label),
+            format!("`{MAIN}` minus `{}`: {}", other.label, gain.points()),
             format!("within {} actions", number(budget.floor())),
             format!("{} against {}", percent(success(&own)), percent(success(&others))),
         ];
@@ -47,8 +47,8 @@ pub(super) const ALTERED: Rule = Rule {
         format!(
             "Loss of success of `{MAIN}`, averaged over all alterations but `noise-*` and `*-hard`, same seeds: holds up \
              to {}, partly up to {}.",
-            percent(SMALL),
-            percent(MODERATE)
+            limit(SMALL),
+            limit(MODERATE)
         )
     },
     judge: |evidence| {
