@@ -14,7 +14,8 @@ use tempfile::TempDir;
 
 fn names() -> Names {
     let words = |list: &[&str]| list.iter().map(|word| word.to_string()).collect();
-    Names { arms: words(&["flat", "tree"]), skills: words(&["dock", "räume"]), rooms: words(&["A", "B"]) }
+    let (arms, skills) = (words(&["flat", "tree"]), words(&["dock", "räume"]));
+    Names { arms, skills, variants: words(&["trained", "dark"]), rooms: words(&["A", "B"]) }
 }
 
 fn trials(count: u32) -> Vec<TrialRow> {
@@ -42,11 +43,13 @@ fn evaluations(count: u32) -> Vec<EvaluationRow> {
         skill: i * 4 / count % 2,
         trials: i,
         actions: 3_000_000_000 + i,
+        variant: i * 2 / count,
         room: i % 2,
         episodes: 100,
         successes: i % 101,
         steps: i * 30,
         reward: f64::from(i) / 3.0,
+        returned: f64::from(i) / -7.0,
         collisions: i % 9,
     };
     (0..count).map(row).collect()
@@ -71,7 +74,7 @@ fn tables_come_back_and_their_bytes_are_fixed() {
         let bytes = write_evaluations(&evaluations(count), &names()).unwrap();
         let (read, rows) = read_evaluations(&saved(&dir, &bytes)).unwrap();
         assert_eq!(rows, evaluations(count));
-        assert_eq!(read.rooms, names().rooms);
+        assert_eq!((read.variants, read.rooms), (names().variants, names().rooms));
     }
     let empty = write_trials(&[], &names()).unwrap();
     assert_eq!(read_trials(&saved(&dir, &empty)).unwrap().1, vec![]);
@@ -362,7 +365,7 @@ fn a_finished_run_vouches_for_every_byte() {
         assert!(FinishedRun::read(&dir).is_err(), "cut to {length}");
     }
     let text = String::from_utf8(whole).unwrap();
-    fs::write(&path, text.replace("\"format\": 1", "\"format\": 2")).unwrap();
+    fs::write(&path, text.replace("\"format\": 2", "\"format\": 3")).unwrap();
     assert!(matches!(FinishedRun::read(&dir), Err(RecordError::Format { .. })));
     fs::write(&path, text.replace("skills/", "../skills/")).unwrap();
     assert!(FinishedRun::read(&dir).unwrap_err().to_string().contains("outside"));
