@@ -36,7 +36,8 @@ fn teach(lane: u32, s: u32, base: u32) {
         if finished {
             let number = begun % settings[s].lessons;
             let lesson = taught_lesson(s, number);
-            begin_replay(s, lesson, 1u);
+            // Every other pass.
+            begin_replay(s, lesson, 1u, (begun / settings[s].lessons) & 1u);
             if begun < settings[s].lessons {
                 let steps = lesson_word(0u);
                 let end = lesson_word(1u);
@@ -119,13 +120,15 @@ fn replay(lane: u32, s: u32, base: u32) {
         if finished {
             let key = vec2<u32>(settings[s].run_seed, settings[s].learner_seed);
             let stream = Stream(key, cursor.skill, cursor.trial, begun, PURPOSE_REPLAY);
-            let word = draw(stream, 0u).x;
+            let words = draw(stream, 0u);
+            let word = words.x;
+            let mirrored = words.y & 1u;
             if begun < taught {
                 let lesson = taught_lesson(s, below(word, settings[s].lessons));
-                begin_replay(s, lesson, 1u);
+                begin_replay(s, lesson, 1u, mirrored);
             } else {
                 let lesson = recent_lesson(s, word);
-                begin_replay(s, lesson, 0u);
+                begin_replay(s, lesson, 0u, mirrored);
             }
         }
         replay_step(lane, s, base);

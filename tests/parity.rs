@@ -5,17 +5,19 @@
 
 use bytemuck::Zeroable;
 use skilltree::backend::cpu::CpuBackend;
+use skilltree::backend::gpu::governor::quantum_turns;
 use skilltree::backend::gpu::source::{ADVANCE, EVALUATE, Kernel, Part, STEP};
 use skilltree::backend::gpu::{GpuBackend, GpuOptions};
 use skilltree::backend::parity::{self, Difference, UNWRITTEN};
-use skilltree::backend::{Backend, Cohort, Test};
+use skilltree::backend::{Backend, Cohort, Stop, Test};
 use skilltree::cli::Failure;
 use skilltree::config::{Overrides, load};
 use skilltree::experiment::parity::{Sample, Work, train};
 use skilltree::experiment::senses::{SILENT, robot_at};
-use skilltree::learner::layout::{Cursor, Episode, Robot};
+use skilltree::learner::layout::{Cursor, Episode, LESSON_HEADER, RECORD_WORDS, Robot};
 use skilltree::learner::phase::{PHASE_DONE, PHASE_FAILED};
 use skilltree::world::Pose;
+use std::mem::offset_of;
 use std::path::Path;
 use std::process::Command;
 use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
@@ -32,6 +34,16 @@ static WORK: LazyLock<Work> = LazyLock::new(|| {
     let plan = load(&path, &Overrides::default()).expect("the config is good");
     Work::new(&plan, 6).expect("the experiment can be set up")
 });
+
+/// Two learners of each of four arms, over a tree of three levels.
+static TREE: LazyLock<Work> = LazyLock::new(|| {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/support/tree.toml");
+    let plan = load(&path, &Overrides::default()).expect("the config is good");
+    Work::new(&plan, 8).expect("the experiment can be set up")
+});
+
+/// What the CPU leaves of them.
+static GROWN: LazyLock<Sample> = LazyLock::new(|| TREE.run(&mut cpu()).expect("it runs"));
 
 /// What the CPU leaves of the first five learners.
 static FIVE: LazyLock<Sample> = LazyLock::new(|| train(few(0..5), &mut cpu()).expect("it runs"));
@@ -81,6 +93,85 @@ fn shipped_kernels_leave_the_bytes_of_the_cpu() {
     let five = &FIVE.cohorts()[0];
     assert_eq!(single.cohorts()[0].cursors[0], five.cursors[3]);
     assert!(single.cohorts()[0].nets[..] == five.nets[3 * five.nets_stride..4 * five.nets_stride]);
+}
+
+/// All records of the remembered trials of a skill over skills; the last one of each only closes the trial.
+fn records(cohort: &Cohort, skill: usize) -> Vec<&[u32]> {
+    let plan = &cohort.shared.skills[skill];
+    let slots = cohort.lessons.chunks(cohort.lessons_stride).flat_map(|own| {
+        let memory = cohort.settings[skill].memory as usize * plan.lesson_stride as usize;
+        own[plan.memory_offset as usize..][..memory].chunks(plan.lesson_stride as usize)
+    });
+    slots.flat_map(|slot| slot[LESSON_HEADER..].chunks(RECORD_WORDS).take(slot[0] as usize + 1)).collect()
+}
+
+#[test]
+fn trees_of_skills_leave_the_bytes_of_the_cpu() {
+    assert_eq!(GROWN.difference(&TREE.run(&mut *gpu()).expect("it runs")), None);
+    let cut = GpuOptions { quanta: Some(5), shard: Some(3), ..GpuOptions::default() };
+    let interrupted = train(TREE.cohorts()[0].clone(), &mut GpuBackend::new(&cut).expect("an adapter"));
+    let (interrupted, after) = (interrupted.expect("it runs"), &GROWN.cohorts()[0]);
+    assert_eq!(parity::advance(after, &interrupted.cohorts()[0]), None);
+    assert!(after.cursors.iter().all(|cursor| cursor.phase == PHASE_DONE));
+
+    // The work reached what it is there for.
+    let skills = &after.shared.skills;
+    assert_eq!(skills.iter().map(|plan| plan.record_words).collect::<Vec<_>>(), [10, 10, 10, 10, 10, 25, 25]);
+    assert_eq!(skills.iter().map(|plan| plan.mirrored).collect::<Vec<_>>(), [0, 0, 1, 0, 0, 0, 0]);
+    assert!(skills[4].planned > 0 && skills[5].outputs == 3 && skills[6].watched == 0b10_1111);
+    let mut events = 0;
+    for (skill, children, valued) in [(5, 3, 3), (6, 4, 2)] {
+        let records = records(after, skill);
+        let some = |what: &str, holds: &dyn Fn(&[u32]) -> bool| {
+            assert!(records.iter().any(|record| holds(record)), "skill {skill}: {what} never happened");
+        };
+        (0..children).for_each(|child| some(&format!("child {child}"), &|record| record[8] & 0xff == child));
+        some("keeping to a child", &|record| record[8] >> 31 == 0);
+        some("a child that is not applicable", &|record| (record[10] >> 8) & 0xff != (1 << children) - 1);
+        for word in 11..17 + valued {
+            some(&format!("word {word}"), &|record| record[word] != 0);
+        }
+        events |= records.iter().fold(0, |seen, record| seen | (record[8] >> 24) & 0x1f);
+    }
+    assert_eq!(events | 1, 0b1_1111, "all events but docking");
+}
+
+/// The kernel with the turns of all its loops counted where the updates stood: the most of any dispatch.
+fn counting(kernel: Kernel) -> Kernel {
+    const TURN: &str = "turned += 1u;\n";
+    let part = |part: &Part| {
+        assert!(!part.text.contains("while ") && !part.text.contains("loop {"), "{}", part.path);
+        // Once for each turn, and once for the test that ends the loop.
+        let line = |line: &str| {
+            if line.trim_start().starts_with("for (") { format!("{TURN}{line}\n{TURN}") } else { format!("{line}\n") }
+        };
+        let mut text: String = part.text.lines().map(line).collect();
+        if part.path == "advance.wgsl" {
+            let from = "cursors[learner] = cursor;";
+            let to = "cursor.updates = max(cursors[learner].updates, turned);";
+            text = text.replace(from, &format!("{to}\n{from}")) + "var<private> turned: u32;\n";
+        }
+        Part { path: part.path, text: text.leak() }
+    };
+    Kernel { parts: kernel.parts.iter().map(part).collect::<Vec<_>>().leak(), ..kernel }
+}
+
+#[test]
+fn no_quantum_takes_more_turns_than_the_governor_counts() {
+    let _alone = gpu();
+    let single = GpuOptions { quanta: Some(1), ..GpuOptions::default() };
+    let mut gpu = GpuBackend::new(&single).expect("an adapter");
+    gpu.replace(counting(ADVANCE));
+    let stop = Stop { skill: u32::MAX, trial: u32::MAX };
+    let mut most = |cohort: &Cohort| {
+        gpu.load(cohort.clone()).expect("it fits");
+        while !gpu.advance(stop).expect("it runs").iter().all(|cursor| stop.holds(cursor)) {}
+        gpu.advance(stop).expect("it runs").iter().map(|cursor| cursor.updates).max().expect("learners")
+    };
+    for cohort in [&TREE.cohorts()[0], &few(0..6)] {
+        let (counted, seen) = (quantum_turns(&cohort.shared), most(cohort));
+        assert!(seen <= counted && 5 * seen > 4 * counted, "{seen} turns of {counted}");
+    }
 }
 
 /// Path of a part of a kernel, a statement in it, and what stands there instead.
@@ -177,10 +268,10 @@ fn faults_of_evaluate_are_named() {
         &[
             (
                 "evaluate.wgsl",
-                "episode.x = moved.x;",
-                "episode.x = moved.x;
-                if lane == 0u && learner == 2u && number == 5u && episode.step == 0u {
-                    episode.x = bitcast<f32>(bitcast<u32>(moved.x) + 1u);
+                "execute(lane, s, action);",
+                "execute(lane, s, action);
+                if lane == 0u && learner == 2u && number == 5u && agent.step == 1u {
+                    agent.x = bitcast<f32>(bitcast<u32>(agent.x) + 1u);
                 }",
             ),
             ("evaluate.wgsl", "episode.start_y = pose.y;", "if s != dispatch.skills { episode.start_y = pose.y; }"),
@@ -272,13 +363,63 @@ fn differences_are_named_in_order() {
         nets(&mut other, at(cohort.nets_stride, word));
         says(&other, &format!("nets word {word} (skill 0, {text})"));
     }
-    flip(bytemuck::cast_slice_mut(&mut other.cursors), 3 * CURSOR_WORDS + 21);
-    says(&other, "cursor updates");
-    flip(bytemuck::cast_slice_mut(&mut other.cursors), 3 * CURSOR_WORDS + 6);
-    says(&other, "cursor heading");
+    for (offset, text) in [
+        (offset_of!(Cursor, agent.run) + 8, "cursor agent.run 2"),
+        (offset_of!(Cursor, agent.heading), "cursor agent.heading"),
+        (offset_of!(Cursor, updates), "cursor updates"),
+    ] {
+        flip(bytemuck::cast_slice_mut(&mut other.cursors), 3 * CURSOR_WORDS + offset / 4);
+        says(&other, text);
+    }
     other.cursors.truncate(3);
     let found = parity::advance(&cohort, &other).expect("a difference");
     assert_eq!((found.field.as_str(), found.left, found.right), ("number of learners", 5, 3));
+}
+
+/// The same for what only trees have: records of their own length, nets with several outputs, mirror images.
+#[test]
+fn differences_in_trees_are_named() {
+    let cohort = &GROWN.cohorts()[0];
+    let skills = &cohort.shared.skills;
+    let says = |part: fn(&mut Cohort) -> &mut [u32], word: usize, text: &str| {
+        let mut other = cohort.clone();
+        part(&mut other)[word] ^= 1;
+        let found = parity::advance(cohort, &other).expect("a difference");
+        assert_eq!((found.learner, found.field.as_str()), (0, text));
+    };
+    fn lessons(cohort: &mut Cohort) -> &mut [u32] {
+        &mut cohort.lessons
+    }
+    fn nets(cohort: &mut Cohort) -> &mut [u32] {
+        bytemuck::cast_slice_mut(&mut cohort.nets)
+    }
+    for (skill, step, word, name) in [
+        (0, 1, 7, "compass"),
+        (5, 0, 8, "choice and events"),
+        (6, 2, 10, "running, applicable and room"),
+        (6, 0, 16, "sine of that door"),
+        (6, 1, 17, "value of child 0"),
+    ] {
+        let plan = &skills[skill];
+        let at = (plan.memory_offset + 4 + step * plan.record_words) as usize + word;
+        let text = format!("lessons word {at} (skill {skill}, slot 0, step {step}, record word {word} ({name}))");
+        says(lessons, at, &text);
+    }
+    let (right, dock) = (&skills[1], &skills[3]);
+    assert_eq!((skills[2].nets_offset, dock.outputs), (right.nets_offset, 6));
+    let word = right.nets_offset as usize;
+    says(nets, word, &format!("nets word {word} (skill 1, child 0, weight of input 0, unit 0)"));
+    let row = |row: u32| (dock.nets_offset + row * 32) as usize;
+    for (word, text) in [
+        (row(dock.inputs) + 3, "hidden bias, unit 3"),
+        (row(dock.inputs + 1), "output weight of child 0, unit 0"),
+        (row(dock.inputs + 6) + 31, "output weight of child 5, unit 31"),
+        (row(dock.inputs + 7) + 2, "output bias, unit 2"),
+        (row(dock.rows + dock.inputs + 7) + 2, "first moment of the output bias, unit 2"),
+        (dock.clock_offset as usize + 16, "clock of second moments"),
+    ] {
+        says(nets, word, &format!("nets word {word} (skill 3, all children, {text})"));
+    }
 }
 
 #[test]
@@ -298,9 +439,9 @@ fn a_number_that_is_not_finite_is_a_difference_on_both_sides_too() {
     other.nets[word] = f32::INFINITY;
     assert_eq!(parity::advance(&cohort, &other).map(|found| found.finite), Some(true));
     let mut episodes = vec![Episode::zeroed(); 6];
-    episodes[4].reward = f32::NEG_INFINITY;
+    episodes[4].agent.reward = f32::NEG_INFINITY;
     let found = parity::evaluate(&episodes, &episodes, 3).expect("a difference");
-    assert_eq!((found.learner, found.field.as_str(), found.finite), (1, "test trial 1, reward", false));
+    assert_eq!((found.learner, found.field.as_str(), found.finite), (1, "test trial 1, agent.reward", false));
     let mut robots = vec![Robot::zeroed(); 2];
     robots[1].events = u32::MAX;
     assert_eq!(parity::step(&robots, &robots), None);

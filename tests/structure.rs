@@ -139,7 +139,10 @@ const DIRECTION: &[(&str, &[&str])] = &[
     ("record", &[]),
     (
         "experiment",
-        &["config", "world", "learner", "math", "robot", "skill", "qnet", "evaluate", "teacher", "backend", "record"],
+        &[
+            "config", "world", "learner", "math", "robot", "skill", "qnet", "lesson", "evaluate", "teacher", "backend",
+            "record",
+        ],
     ),
     ("report", &["config", "world", "math", "record"]),
     ("cli", &["config", "world", "learner", "robot", "backend", "experiment", "record", "report"]),

@@ -39,9 +39,10 @@ fn lesson_word(offset: u32) -> u32 {
     return lessons[lessons_base + at];
 }
 
-fn begin_replay(s: u32, lesson: u32, taught: u32) {
+fn begin_replay(s: u32, lesson: u32, taught: u32, mirrored: u32) {
     cursor.replay_lesson = lesson;
     cursor.replay_taught = taught;
+    cursor.replay_mirrored = mirrored * settings[s].mirror_replays;
     let steps = lesson_word(0u);
     let end = lesson_word(1u);
     cursor.replay += 1u;
@@ -61,6 +62,15 @@ fn load_record(lane: u32, step: u32) {
     workgroupBarrier();
 }
 
+fn reflected(skill: u32, children: u32, mirrored: bool) -> u32 {
+    var bits = 0u;
+    for (var child = 0u; child < skills[skill].children; child++) {
+        let image = select(child, skills[skill].mirror_child[child], mirrored);
+        bits |= ((children >> child) & 1u) << image;
+    }
+    return bits;
+}
+
 fn bounded(aim: f32, limit: f32) -> f32 {
     let low = select(-limit, aim, aim > -limit);
     return select(limit, low, low < limit);
@@ -77,9 +87,11 @@ fn replay_step(lane: u32, s: u32, base: u32) {
     let open = cursor.replay_open == 1u;
     let step = select(cursor.replay_left - 1u, cursor.replay_left, open);
     load_record(lane, step);
-    let child = record[8] & 0xffu;
+    let mirrored = cursor.replay_mirrored == 1u;
+    let done = record[8] & 0xffu;
     let choices = (record[8] >> 16u) & 0xffu;
-    let allowed = select((record[8] >> 8u) & 0xffu, choices, settings[s].backup == BACKUP_STEPS);
+    let offered = select((record[8] >> 8u) & 0xffu, choices, settings[s].backup == BACKUP_STEPS);
+    let allowed = reflected(skill, offered, mirrored);
     let reward = bitcast<f32>(record[9]) * settings[s].value_scale;
     let future = (1.0f - settings[s].lambda) * cursor.next_best + settings[s].lambda * cursor.next_return;
     let aim = bounded(reward + settings[s].gamma * future, settings[s].target_limit);
@@ -89,7 +101,7 @@ fn replay_step(lane: u32, s: u32, base: u32) {
         cursor.next_return = aim;
         cursor.replay_left = step;
     } else {
-        encode(lane, skill);
+        encode(lane, skill, mirrored);
         forward(lane, skill, base);
         let outlook = weigh(lane, skills[skill].children, allowed, sharpness(s, cursor.trial));
         if open {
@@ -97,6 +109,7 @@ fn replay_step(lane: u32, s: u32, base: u32) {
             cursor.next_best = outlook.best;
             cursor.next_return = outlook.best;
         } else {
+            let child = select(done, skills[skill].mirror_child[done], mirrored);
             let taught = settings[s].taught_always == 1u && cursor.replay_taught == 1u;
             let policy = taught || odds[child] > settings[s].policy_threshold * outlook.total;
             let stretched = outlook.best + settings[s].advantage_scale * (aim - outlook.best);

@@ -57,7 +57,7 @@ fn think(lane: u32, base: u32, n: u32) {
     if skills[n].planned > 0u {
         consult(lane, n);
     } else {
-        encode(lane, n);
+        encode(lane, n, skills[n].mirrored == 1u);
         forward(lane, n, base);
     }
 }

@@ -58,13 +58,12 @@ fn marked(skill: u32, kind: u32, lane: u32) -> f32 {
     return value;
 }
 
-fn encode(lane: u32, skill: u32) {
+fn encode(lane: u32, skill: u32, mirrored: bool) {
     for (var group = 0u; group < skills[skill].groups; group++) {
         let kind = skills[skill].group_kind[group];
         let first = skills[skill].group_first[group];
         let width = skills[skill].group_width[group];
         let table = skills[skill].group_table[group];
-        let mirrored = skills[skill].mirrored == 1u;
         if kind == GROUP_SONAR {
             if lane < RAYS {
                 let ray = select(lane, (RAYS - lane) % RAYS, mirrored);

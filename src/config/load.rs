@@ -1,6 +1,6 @@
 //! From a config file and what the command line adds to a [`Plan`].
 //!
-//! Four layers, each over the one before: defaults, the file, `--set`, and an arm's own table (into which
+//! Layers, each over the one before: defaults, the config that the file extends, the file, `--set`, and an arm's own table (into which
 //! `--set arm.NAME.key=value` goes first). Within a skill, `skill.NAME.learning` lies over `learning`, also over an
 //! arm's: what names the skill is more specific.
 
@@ -28,8 +28,7 @@ pub struct Overrides {
 
 /// Reads a config file, the world files that it names, and the command line's changes.
 pub fn load(path: &Path, overrides: &Overrides) -> Result<Plan, ConfigError> {
-    let text = std::fs::read_to_string(path).map_err(|error| ConfigError::unreadable(path, "config file", &error))?;
-    let mut tree = Node::parse(&text, path)?;
+    let mut tree = read(path)?;
     for argument in &overrides.set {
         set::apply(&mut tree, argument)?;
     }
@@ -73,6 +72,32 @@ pub fn load(path: &Path, overrides: &Overrides) -> Result<Plan, ConfigError> {
     let worlds = worlds.placed;
     let resolved = resolve(base, (&name, &worlds[0].file), [("arm", own), ("alter", altered)]);
     Ok(Plan { name, source, title, run_seed, seeds, worlds, arms, alterations, evaluate, teacher, resolved })
+}
+
+/// A config's tree, laid over that of the config that it extends. Arms and alterations are each config's own.
+fn read(path: &Path) -> Result<Node, ConfigError> {
+    let text = |path: &Path| {
+        std::fs::read_to_string(path).map_err(|error| ConfigError::unreadable(path, "config file", &error))
+    };
+    let mut tree = Node::parse(&text(path)?, path)?;
+    let Some(entry) = tree.remove(keys::EXTENDS.name()) else { return Ok(tree) };
+    let item = Item { name: keys::EXTENDS.name().to_owned(), node: &entry.node };
+    let name = item.text()?;
+    if Path::new(name).components().count() != 1 {
+        // Its world is named by a path that starts from its own folder.
+        return Err(item.error(format!("`{name}` lies in another folder"), "name a config beside this one"));
+    }
+    let beside = path.with_file_name(name);
+    let found = text(&beside).map_err(|error| item.error(error.message(), "name a config beside this one"))?;
+    let mut base = Node::parse(&found, &beside)?;
+    if base.get(keys::EXTENDS.name()).is_some() {
+        return Err(item.error(format!("`{name}` itself extends another config"), "name that one instead"));
+    }
+    for own in ["arm", "alter", keys::ARMS.name(), keys::NAME.name(), keys::TITLE.name()] {
+        base.remove(own);
+    }
+    base.merge(tree);
+    Ok(base)
 }
 
 /// The tree of all defaults, with one table for each skill of the file, in its order.

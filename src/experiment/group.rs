@@ -233,6 +233,7 @@ fn driven(plan: &SkillPlan, skill: &Skill) -> SkillPlan {
     if skill.is_high() {
         driven.children = Action::ALL.len() as u32;
         driven.record_words = BASE_WORDS as u32;
+        driven.thresholded = 0;
         for (code, action) in driven.child.iter_mut().zip(Action::ALL) {
             *code = action as u32;
         }

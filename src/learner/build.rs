@@ -138,7 +138,7 @@ fn plan_of(skill: &Skill, world: &World, atlas: &mut Atlas) -> Result<SkillPlan,
     plan.children = skill.children.len() as u32;
     (plan.nets, plan.outputs) = if skill.learning.shared_net { (1, plan.children) } else { (plan.children, 1) };
     plan.rows = inputs + plan.outputs + 2;
-    plan.record_words = if skill.is_high() { RECORD_WORDS } else { BASE_WORDS } as u32;
+    plan.record_words = if skill.is_high() || recalls(skill) { RECORD_WORDS } else { BASE_WORDS } as u32;
     plan.mirrored = u32::from(skill.mirror.is_some());
     plan.groups = skill.inputs.len() as u32;
     plan.starts = skill.starts.len() as u32;
@@ -193,6 +193,14 @@ fn plan_of(skill: &Skill, world: &World, atlas: &mut Atlas) -> Result<SkillPlan,
     }
     (plan.tests_offset, plan.tests_count) = cells_of(&skill.tests)?;
     Ok(plan)
+}
+
+/// Whether a skill's inputs stand in the second part of a record.
+fn recalls(skill: &Skill) -> bool {
+    let memory = |input: &Input| {
+        matches!(input, Input::Running | Input::LightTrace | Input::DoorTrace | Input::RangeMeans | Input::Room)
+    };
+    skill.inputs.iter().any(memory)
 }
 
 /// What a net is given for each sonar reading, 0 to 127 inches.

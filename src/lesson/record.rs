@@ -25,9 +25,7 @@ pub fn note(record: &mut [u32; RECORD_WORDS], child: u32, options: Options) {
 #[inline(always)]
 pub fn write_record(lessons: &mut [u32], record: &[u32; RECORD_WORDS], words: u32, lesson: u32, step: u32) {
     let at = lesson as usize + LESSON_HEADER + (step * words) as usize;
-    for word in 0..words as usize {
-        lessons[at + word] = record[word];
-    }
+    lessons[at..at + words as usize].copy_from_slice(&record[..words as usize]);
 }
 
 /// Adds what step `step` of the lesson brought about.

@@ -74,7 +74,6 @@ pub fn pick(scratch: &Scratch, outlook: Outlook, word: u32) -> u32 {
 
 /// Chooses among the allowed children by the skill's own rule. `greedy` takes the best learned value.
 #[inline(always)]
-#[expect(clippy::too_many_arguments, reason = "the twin of a shader function, which has no methods")]
 pub fn choose(
     scratch: &mut Scratch,
     settings: &Settings,

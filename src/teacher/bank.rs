@@ -2,13 +2,13 @@
 
 use super::planner::{Planner, origin_of};
 use crate::config::plan::Skill;
-use crate::learner::layout::{Agent, Settings, SkillPlan};
+use crate::learner::layout::{Agent, BASE_WORDS, Settings, SkillPlan};
 use crate::learner::memory::{Scratch, Shared};
 use crate::lesson::record::{CUT, ENDED, note, write_header, write_outcome, write_record};
 use crate::math::rng::{Purpose, Stream, draw, roll};
 use crate::skill::act::{execute, place, sense};
 use crate::skill::choose::NO_CHILD;
-use crate::skill::persist::Options;
+use crate::skill::persist::{Options, extend};
 use crate::skill::start::{start_pose, start_region};
 use crate::world::Pose;
 use bytemuck::Zeroable;
@@ -152,6 +152,10 @@ impl Teacher<'_> {
             sense(&mut agent, self.shared, &mut scratch, self.settings, &dice);
             if step > 0 {
                 write_outcome(&mut lesson, words, 0, step - 1, agent.events, agent.earned);
+            }
+            if words > BASE_WORDS as u32 {
+                let world = &self.shared.floor.plan;
+                extend(&agent, world, &mut scratch, self.plan, self.settings, self.number);
             }
             let achieved = agent.events & self.plan.ends != 0;
             if achieved || step >= self.settings.max_steps {

@@ -22,6 +22,8 @@ const HEADINGS: usize = 24;
 const HEADING_STEP: f32 = 15.0;
 /// Sweeps stop when no value changes by more than this share of the largest reward.
 const TOLERANCE: f32 = 1.0e-5;
+/// A move that gets less far than this, inches, gets nowhere.
+const STUCK: f32 = 0.5;
 /// More sweeps than any discount below 1 needs for [`TOLERANCE`] in worlds of this size.
 const MOST_SWEEPS: usize = 2_000;
 
@@ -109,11 +111,19 @@ impl Planner {
         let mut best = (0, f32::NEG_INFINITY);
         for (child, action) in self.children.iter().enumerate() {
             let worth = self.worth(shared, origin, pose, *action);
-            if worth > best.1 {
+            if worth > best.1 && !self.stuck(shared, origin, pose, *action) {
                 best = (child, worth);
             }
         }
         best.0
+    }
+
+    /// Whether a move is blocked at once and ends nothing. Between grid poses the value of staying may come out above
+    /// that of turning away, and the robot would push for ever.
+    fn stuck(&self, shared: &Shared, origin: u32, pose: Pose, action: Action) -> bool {
+        let outcome = self.outcome(shared, origin, pose, action, 1.0);
+        let way = Vec2::new(outcome.pose.x - pose.x, outcome.pose.y - pose.y);
+        action.travel() != 0.0 && !outcome.ended && way.length() < STUCK
     }
 
     /// Expected return of an action at a pose and of the best ones after it.

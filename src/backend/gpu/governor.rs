@@ -132,9 +132,10 @@ fn way_turns(shared: &Shared, plan: &SkillPlan, watched: u32) -> u32 {
     turns.max().unwrap_or(0)
 }
 
-/// A transition of skill `plan`: the draws of the lesson, of its number and of the step, and the nets both ways.
+/// A transition of skill `plan`: the draws of the lesson, of its number and of the step, the children in the mirror,
+/// and the nets both ways.
 fn replay_turns(plan: &SkillPlan) -> u32 {
-    3 * DRAW + nets_turns(plan) + choice_turns(plan) + turns(plan.rows, 0)
+    3 * DRAW + turns(plan.children, 0) + nets_turns(plan) + choice_turns(plan) + turns(plan.rows, 0)
 }
 
 /// Completing the record of a skill over skills.
