@@ -44,6 +44,9 @@ fn row(series: &Series, altered: &Altered) -> Value {
 /// What each alteration alters, as the resolved config says it.
 pub fn meanings(config: &toml::Table) -> Vec<(String, String)> {
     let table = config.get("alter").and_then(toml::Value::as_table);
-    let bare = |value: &toml::Value| value.to_string().trim_matches(['{', '}', ' ']).to_owned();
+    let bare = |value: &toml::Value| {
+        let text = value.to_string();
+        text.strip_prefix("{ ").and_then(|text| text.strip_suffix(" }")).unwrap_or(&text).to_owned()
+    };
     table.into_iter().flatten().map(|(name, value)| (name.clone(), bare(value))).collect()
 }

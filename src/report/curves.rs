@@ -171,7 +171,10 @@ pub fn draw(figure: &Figure) -> String {
     for (i, curve) in curves.iter().enumerate() {
         let color = COLORS[i % COLORS.len()];
         let points: Vec<_> = curve.points.iter().map(|point| (x.place(point.x), y.place(point.y))).collect();
-        canvas.line(&points, color, 2.0);
+        match flat(curve) {
+            true => canvas.dashes(points[0], (x.points.1, points[0].1), color, 1.6, 3.0),
+            false => canvas.line(&points, color, 2.0),
+        }
         for &point in &points {
             marker(&mut canvas, i, point, color);
         }
@@ -182,6 +185,11 @@ pub fn draw(figure: &Figure) -> String {
         draw_labels(&mut canvas, figure, curves, (&x, &y));
     }
     canvas.finish()
+}
+
+/// Whether a curve is a single test before any trial: of an arm that does not learn, so it is drawn across the figure.
+fn flat(curve: &Curve) -> bool {
+    curve.points.len() == 1 && curve.points[0].x == 0.0
 }
 
 fn draw_band(canvas: &mut Canvas, x: &Axis, y: &Axis, points: &[Point], color: RGBColor) {
@@ -242,7 +250,8 @@ fn draw_labels(canvas: &mut Canvas, figure: &Figure, curves: &[Curve], (x, y): (
     let mut labels = Vec::new();
     for (i, curve) in curves.iter().enumerate() {
         if let Some(last) = curve.points.last() {
-            labels.push(Label { text: &curve.label, curve: Some(i), end: (x.place(last.x), y.place(last.y)) });
+            let end = if flat(curve) { x.points.1 } else { x.place(last.x) };
+            labels.push(Label { text: &curve.label, curve: Some(i), end: (end, y.place(last.y)) });
         }
     }
     if let Some((text, value)) = &figure.bound {

@@ -105,7 +105,8 @@ pub fn learning(summary: &Summary) -> Vec<Drawing> {
 
 /// The floor plan and the sensors at its places.
 pub fn floor(world: &World, places: &[PlaceReading]) -> Vec<Drawing> {
-    let mut drawings = vec![Drawing { name: "world".into(), section: Section::World, svg: floor::draw_world(world) }];
+    let mut drawings =
+        vec![Drawing { name: "world".into(), section: Section::World, svg: floor::draw_world(world, floor::LARGE) }];
     for reading in places {
         let place = &reading.place;
         drawings.push(Drawing {
@@ -126,7 +127,7 @@ pub fn floor(world: &World, places: &[PlaceReading]) -> Vec<Drawing> {
 pub fn elsewhere(world: &World, file: &str) -> Drawing {
     let name = file.trim_start_matches("worlds/").trim_end_matches(".toml");
     let name = format!("world-{}", file_word(name));
-    Drawing { name, section: Section::Elsewhere, svg: floor::draw_world(world) }
+    Drawing { name, section: Section::Elsewhere, svg: floor::draw_world(world, floor::SMALL) }
 }
 
 /// An example trial.

@@ -10,7 +10,7 @@ const MARGIN: f64 = 34.0;
 const TOP: f64 = 62.0;
 const BOTTOM: f64 = 44.0;
 /// Points that the longer side of a large floor takes.
-const LARGE: f64 = 560.0;
+pub(super) const LARGE: f64 = 560.0;
 /// The same of one of three side by side.
 pub(super) const SMALL: f64 = 340.0;
 /// Shortest width that holds the headings of a large floor.
@@ -23,11 +23,12 @@ const ROBOT: RGBColor = RGBColor(0x00, 0x72, 0xb2);
 const RAY: RGBColor = RGBColor(0xd5, 0x5e, 0x00);
 const ROOM: RGBColor = RGBColor(0xb4, 0xb4, 0xb4);
 
-/// Draws the floor plan with its rooms, doors, charger, light and places.
-pub fn draw_world(world: &World) -> String {
+/// Draws the floor plan with its rooms, doors, charger, light and places, in [`LARGE`] or [`SMALL`] size.
+pub fn draw_world(world: &World, side: f64) -> String {
     let ring = if world.light.is_some() { " Dashed: range of the light." } else { "" };
-    let subtitle = format!("{} by {} inches. Arrows: named places.{ring}", world.size.x, world.size.y);
-    let mut floor = Floor::new(world, &format!("Floor plan: {}", world.name), &subtitle, (LARGE, 0.0));
+    let legend = if side < LARGE { String::new() } else { format!(" Arrows: named places.{ring}") };
+    let subtitle = format!("{} by {} inches.{legend}", world.size.x, world.size.y);
+    let mut floor = Floor::new(world, &format!("Floor plan: {}", world.name), &subtitle, (side, 0.0));
     if let Some(light) = &world.light {
         floor.range(world, light);
     }
@@ -37,7 +38,7 @@ pub fn draw_world(world: &World) -> String {
         floor.robot(pose, ROBOT);
         let behind = Vec2::from_angle(pose.heading.to_radians()) * -(ROBOT_RADIUS + 9.0);
         let at = floor.at(Vec2::new(pose.x, pose.y) + behind);
-        floor.canvas.text(name, at, 14.0, INK, Anchor::Middle);
+        floor.canvas.text(name, at, if side < LARGE { 11.5 } else { 14.0 }, INK, Anchor::Middle);
     }
     floor.canvas.finish()
 }
@@ -143,7 +144,7 @@ impl Floor {
     fn rooms(&mut self, world: &World) {
         for room in &world.rooms {
             let clear = self.at(clearest_point(&room.area, world));
-            self.canvas.text(&room.name, clear, 34.0, ROOM, Anchor::Middle);
+            self.canvas.text(&room.name, clear, 25.0 * self.scale, ROOM, Anchor::Middle);
         }
         for door in &world.doors {
             let along = Vec2::new(-door.normal.y, door.normal.x) * door.width / 2.0;

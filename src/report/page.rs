@@ -135,6 +135,7 @@ fn skill_part(skill: &Skill, figures: Vec<Value>) -> Value {
         others.par_iter().flat_map_iter(|(other, _)| differences(first, other)).collect()
     });
     let copies = distinct.iter().filter(|(_, copies)| !copies.is_empty());
+    let trained = distinct.iter().filter(|(series, _)| series.last().trials > 0);
     let bounds = skill.bounds.iter();
     context! {
         name => skill.name.as_str(),
@@ -146,7 +147,7 @@ fn skill_part(skill: &Skill, figures: Vec<Value>) -> Value {
         bounds => bounds.map(|bound| planner(bound, skill.never_ends())).collect::<Vec<_>>(),
         differences => differences,
         ends => !skill.never_ends(),
-        criterion => distinct.iter().map(|(series, copies)| criterion_row(series, copies)).collect::<Vec<_>>(),
+        criterion => trained.map(|(series, copies)| criterion_row(series, copies)).collect::<Vec<_>>(),
         figures => figures,
     }
 }
@@ -199,31 +200,31 @@ fn criterion_row(series: &Series, copies: &[&str]) -> Value {
     }
 }
 
-/// Differences to the first arm on the seeds that both have, at the moments that both were tested.
+/// Differences to the first arm on the seeds that both have: at their last tests, and at an early one that both have.
 fn differences(first: &Series, other: &Series) -> Vec<Value> {
-    let pairs =
-        moments(other).into_iter().filter_map(|b| Some((first.cells.iter().find(|a| a.trials == b.trials)?, b)));
+    let early = other.nearest(EARLY_TRIALS);
+    let same = first.cells.iter().find(|cell| cell.trials == early.trials);
+    let early = same.filter(|_| early.trials != other.last().trials).map(|same| (same, early));
     let difference = |(a, b): (&Cell, &Cell)| {
         let of = |value: fn(&Score) -> f64| {
             let (a, b) = paired(&a.scores, &b.scores, value);
             (paired_difference(&a, &b, TABLE_RESAMPLES), a.len())
         };
-        let (((success, success_interval), pairs), ((steps, interval), _)) =
-            (of(Score::success), of(Score::steps_per_trial));
+        let ((success, success_interval), pairs) = of(Score::success);
+        let ((steps, interval), _) = of(Score::steps_per_trial);
         context! {
             arms => format!("{} minus {}", first.label, other.label),
-            trials => b.trials,
+            trials => if a.trials == b.trials { a.trials.to_string() } else { format!("{}, {}", a.trials, b.trials) },
             pairs => pairs,
             success => points_with(success, success_interval),
             steps => format!("{steps:+.1} [{:+.1}, {:+.1}]", interval.low, interval.high),
         }
     };
-    pairs.map(difference).collect()
+    early.into_iter().chain([(first.last(), other.last())]).map(difference).collect()
 }
 
 fn planner(bound: &Bound, never_ends: bool) -> String {
     let score = &bound.score;
-    let task = bound.arm.as_ref().map_or_else(String::new, |arm| format!(" In the task of the arm {arm}:"));
     let does = match never_ends {
         true => format!("has a return of {:.2}", score.return_per_trial()),
         false => format!(
@@ -233,9 +234,10 @@ fn planner(bound: &Bound, never_ends: bool) -> String {
             score.steps_per_trial(),
         ),
     };
-    format!("{task} The planner, which knows the floor plan and the pose, {does}: a bound for every arm.")
-        .trim_start()
-        .to_owned()
+    match &bound.arm {
+        None => format!("The planner, which knows the floor plan and the pose, {does}: a bound for every arm."),
+        Some(arm) => format!("In the task of the arm {arm}, the planner {does}."),
+    }
 }
 
 fn warnings(summary: &Summary) -> Vec<String> {

@@ -27,8 +27,8 @@ pub fn table(summary: &Summary, claims: &[Claim]) -> String {
     }
     for claim in claims {
         let figures = if claim.figures.is_empty() { claim.why.clone() } else { claim.figures.join("; ") };
-        let _ = writeln!(text, "  {:>2} {:<15} {}", claim.number, claim.verdict.words(), claim.says);
-        let _ = writeln!(text, "  {:>2} {:<15} {figures}", "", "");
+        let (number, title, verdict) = (claim.number, claim.title, claim.verdict.words());
+        let _ = writeln!(text, "  {number:>2} {title:<18} {verdict:<15} {}", figures.replace('`', ""));
     }
     for warning in &summary.warnings {
         let _ = writeln!(text, "note: {warning}");

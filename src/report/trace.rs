@@ -1,6 +1,6 @@
 //! Example trials drawn in the floor plan, coloured by the child that drove.
 
-use super::canvas::{Anchor, GREY, INK};
+use super::canvas::{Anchor, INK};
 use super::curves::COLORS;
 use super::floor::{Floor, SMALL};
 use crate::record::{Trajectory, TrajectoryPoint};
@@ -13,6 +13,9 @@ const WIDTH: f64 = 2.4;
 const DOT: f64 = 2.6;
 const LEGEND_ROOM: f64 = 18.0;
 const LEGEND_TEXT: f64 = 12.0;
+/// Inches from a robot's centre to the word that marks it.
+const BESIDE: f32 = 26.0;
+/// Of the robot where a trial ended.
 const GHOST: RGBColor = RGBColor(0x88, 0x88, 0x88);
 
 /// A stretch of a trial that one child drove.
@@ -57,8 +60,9 @@ pub fn draw(world: &World, trajectory: &Trajectory) -> String {
             floor.canvas.line(&way, color(piece.child), WIDTH);
             floor.canvas.disc(way[0], DOT, color(piece.child));
         }
-        mark(&mut floor, &pose(first), "start", INK);
-        mark(&mut floor, &pose(last), "end", GREY);
+        // It left forwards, and came from behind.
+        mark(&mut floor, &pose(first), 180.0, "start");
+        mark(&mut floor, &pose(last), -90.0, "end");
     }
     legend(&mut floor, trajectory, &shown);
     floor.canvas.finish()
@@ -68,11 +72,11 @@ fn color(child: u32) -> RGBColor {
     COLORS[child as usize % COLORS.len()]
 }
 
-/// Writes behind a robot what it marks.
-fn mark(floor: &mut Floor, pose: &Pose, text: &str, color: RGBColor) {
-    let behind = Vec2::from_angle(pose.heading.to_radians()) * -24.0;
-    let at = floor.at(Vec2::new(pose.x, pose.y) + behind);
-    floor.canvas.text(text, at, LEGEND_TEXT, color, Anchor::Middle);
+/// Writes beside a robot what it marks, at an angle from its heading.
+fn mark(floor: &mut Floor, pose: &Pose, angle: f32, text: &str) {
+    let beside = Vec2::from_angle((pose.heading + angle).to_radians()) * BESIDE;
+    let at = floor.at(Vec2::new(pose.x, pose.y) + beside);
+    floor.canvas.text(text, at, LEGEND_TEXT, INK, Anchor::Middle);
 }
 
 fn legend(floor: &mut Floor, trajectory: &Trajectory, shown: &[u32]) {

@@ -3,6 +3,7 @@
 mod claims;
 mod comparison;
 mod made;
+mod pages;
 
 use glam::Vec2;
 use skilltree::record::places::write_places;

@@ -22,6 +22,7 @@ const GOOD: f64 = 0.75;
 const FOLLOWING: f64 = 0.74;
 
 pub(super) const UNTAUGHT: Rule = Rule {
+    title: "docking untaught",
     says: "Without lessons, some robots never learn to dock within 300 trials, and the others need most of them.",
     rule: || {
         format!(
@@ -64,6 +65,7 @@ fn upper_median(values: &[f64]) -> f64 {
 }
 
 pub(super) const TAUGHT: Rule = Rule {
+    title: "docking taught",
     says: "With 10 lessons, docking is learned very well, generally within 150 trials.",
     rule: || {
         format!(
@@ -85,6 +87,7 @@ pub(super) const TAUGHT: Rule = Rule {
 };
 
 pub(super) const OTHER_SKILLS: Rule = Rule {
+    title: "doors and walls",
     says: "With lessons, passing doors and following walls are learned effectively too.",
     rule: || {
         format!(

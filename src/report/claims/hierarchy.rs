@@ -20,6 +20,7 @@ const UNCRITICAL: [&str; 3] = ["low-thresholds", "high-thresholds", "learned-thr
 const EXCLUDING: &str = "excluding-thresholds";
 
 pub(super) const EARLY: Rule = Rule {
+    title: "tree, 20 trials",
     says: "Within 20 trials, the hierarchy connects from most places in rooms A and C.",
     rule: || {
         format!(
@@ -45,6 +46,7 @@ pub(super) const EARLY: Rule = Rule {
 };
 
 pub(super) const NEARLY_OPTIMAL: Rule = Rule {
+    title: "tree, 60 trials",
     says: "Within 60 trials, it is nearly optimal from everywhere.",
     rule: || {
         format!(
@@ -82,6 +84,7 @@ pub(super) const NEARLY_OPTIMAL: Rule = Rule {
 };
 
 pub(super) const PERSISTENCE: Rule = Rule {
+    title: "persistence",
     says: "Without the Persistence Rule, performance is poor.",
     rule: || {
         format!(
@@ -106,6 +109,7 @@ pub(super) const PERSISTENCE: Rule = Rule {
 };
 
 pub(super) const THRESHOLDS: Rule = Rule {
+    title: "thresholds",
     says: "Thresholds of applicability are not critical, unless they are so high that they rule out the best skill.",
     rule: || {
         format!(
@@ -132,6 +136,7 @@ pub(super) const THRESHOLDS: Rule = Rule {
 };
 
 pub(super) const TD_LAMBDA: Rule = Rule {
+    title: "TD(lambda)",
     says: "TD(lambda > 0) is more effective than TD(0).",
     rule: || {
         format!(

@@ -80,6 +80,8 @@ impl Verdict {
 pub struct Claim {
     /// In the order of the paper.
     pub number: usize,
+    /// What it is about, in two or three words.
+    pub title: &'static str,
     /// The claim in our words.
     pub says: &'static str,
     /// What the run says; empty if it says nothing.
@@ -101,6 +103,7 @@ struct Found {
 
 /// How a claim is judged.
 struct Rule {
+    title: &'static str,
     says: &'static str,
     /// When the claim holds, and when it does in part.
     rule: fn() -> String,
@@ -133,7 +136,7 @@ pub fn judge(summary: &Summary, trainings: &[Training]) -> Vec<Claim> {
             Err(lacking) => (Found { figures: Vec::new(), seeds: 0, verdict: Verdict::NotTested }, lacking),
         };
         let Found { figures, seeds, verdict } = found;
-        Claim { number: index + 1, says: rule.says, figures, seeds, verdict, why }
+        Claim { number: index + 1, title: rule.title, says: rule.says, figures, seeds, verdict, why }
     });
     let mut claims: Vec<Claim> = judged.collect();
     if summary.arm(MAIN).is_none() {

@@ -17,6 +17,7 @@ const OFTEN: f64 = 0.05;
 const POOR: f64 = 0.8;
 
 pub(super) const FAILS_FROM_AFAR: Rule = Rule {
+    title: "single, far rooms",
     says: "After 300 trials a single Q-function generally fails from rooms B and C.",
     rule: || {
         format!(
@@ -42,6 +43,7 @@ pub(super) const FAILS_FROM_AFAR: Rule = Rule {
 };
 
 pub(super) const COLLIDES: Rule = Rule {
+    title: "single, collisions",
     says: "It collides on more than 5% of its steps.",
     rule: || {
         format!(
@@ -69,6 +71,7 @@ pub(super) const COLLIDES: Rule = Rule {
 };
 
 pub(super) const PUNISHED: Rule = Rule {
+    title: "single, punished",
     says: "Punishing collisions makes it slightly better, but it still performs poorly.",
     rule: || {
         format!(

@@ -12,6 +12,7 @@ const SMALL: f64 = 0.1;
 const MODERATE: f64 = 0.2;
 
 pub(super) const EQUAL_BUDGET: Rule = Rule {
+    title: "equal cost",
     says: "At a similar cost in actions, hierarchical learning is superior.",
     rule: || {
         format!(
@@ -42,6 +43,7 @@ pub(super) const EQUAL_BUDGET: Rule = Rule {
 };
 
 pub(super) const ALTERED: Rule = Rule {
+    title: "altered worlds",
     says: "What was learned adapts to small unexpected changes of the world without further training.",
     rule: || {
         format!(
@@ -58,13 +60,16 @@ pub(super) const ALTERED: Rule = Rule {
         let changes: Vec<Vec<f64>> = altered.iter().map(|altered| differences(series, altered)).collect();
         let seeds = changes.iter().map(Vec::len).min().filter(|seeds| *seeds > 0);
         let seeds = seeds.ok_or("There are no tests of it in slightly altered worlds.")?;
-        let of_seed = |seed: usize| -mean(&changes.iter().map(|change| change[seed]).collect::<Vec<_>>());
-        let loss = Estimate::new(&(0..seeds).map(of_seed).collect::<Vec<_>>());
+        let of_seed = |seed: usize| mean(&changes.iter().map(|change| change[seed]).collect::<Vec<_>>());
+        let change = Estimate::new(&(0..seeds).map(of_seed).collect::<Vec<_>>());
         let names: Vec<String> = altered.iter().map(|altered| altered.variant.clone()).collect();
         Ok(Found {
-            figures: vec![format!("a loss of {}", loss.points()), format!("over {}", names.join(", "))],
+            figures: vec![
+                format!("altered minus as trained: {}", change.points()),
+                format!("over {}", names.join(", ")),
+            ],
             seeds,
-            verdict: Verdict::from_limits(-loss.mean, -SMALL, -MODERATE),
+            verdict: Verdict::from_limits(change.mean, -SMALL, -MODERATE),
         })
     },
 };
