@@ -144,7 +144,7 @@ fn draw(skill: &Skill, measure: &Measure) -> Drawing {
     } else if measure.against_actions {
         notes.push("A point lies at the mean number of actions over seeds.".into());
     } else if all.iter().any(|(_, copies)| !copies.is_empty()) {
-        notes.push("+ a number: so many other arms have the skill from the same training.".into());
+        notes.push("+ a number: so many other arms have the same numbers: they learned the skill together.".into());
     }
     let curves = all
         .iter()

@@ -41,8 +41,9 @@ pub fn percent_with(share: f64, interval: Interval) -> String {
 
 /// A difference of two shares, in percentage points with signs.
 pub fn points_with(difference: f64, interval: Interval) -> String {
-    let (low, high) = (100.0 * interval.low, 100.0 * interval.high);
-    format!("{:+.1} [{low:+.1}, {high:+.1}]", 100.0 * difference)
+    // Adding 0 makes of a rounded -0 a 0.
+    let points = |share: f64| (1000.0 * share).round() / 10.0 + 0.0;
+    format!("{:+.1} [{:+.1}, {:+.1}]", points(difference), points(interval.low), points(interval.high))
 }
 
 /// A value with its interval.

@@ -3,7 +3,6 @@
 use super::claims::Claim;
 use super::comparison::Comparison;
 use super::figures::with_copies;
-use super::numbers::percent;
 use super::rooms;
 use super::statistics::{TABLE_RESAMPLES, bootstrap, mean, share_below};
 use super::summary::{Cell, Score, Skill, Summary};
@@ -85,7 +84,7 @@ fn room_lines(comparison: &Comparison<'_>, names: &[String]) -> String {
     if let Some(bound) = comparison.skill.bound(&comparison.hierarchical[0].arm) {
         let rates =
             shown.iter().map(|&(room, name)| (name, &bound.rooms[room])).filter(|(_, score)| score.episodes > 0);
-        let rates = rates.map(|(name, score)| format!("{name} {}", percent(score.success())));
+        let rates = rates.map(|(name, score)| format!("{name} {:.1} %", 100.0 * score.success()));
         let _ = writeln!(text, "  {:<24} {}", "planner (bound)", rates.collect::<Vec<_>>().join("   "));
     }
     text
