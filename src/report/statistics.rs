@@ -1,6 +1,6 @@
 //! Means, intervals and rates over seeds. Values are one number per seed; all functions give NaN for no values.
 
-use super::resample::Resampler;
+use super::resample::resample;
 
 /// Resamples behind every interval in a table.
 pub const TABLE_RESAMPLES: usize = 10_000;
@@ -12,8 +12,6 @@ pub const FEW_SEEDS: usize = 10;
 const TAIL: f64 = 0.025;
 /// 97.5 percent point of the normal distribution.
 const Z: f64 = 1.959_963_984_540_054;
-/// Any number would do; it is fixed so that reports can be compared byte by byte.
-const SEED: u32 = 1993;
 
 /// A 95 percent interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -90,16 +88,8 @@ fn resampled(count: usize, resamples: usize, mut outcome: impl FnMut(&[u32]) -> 
     if count == 0 || resamples == 0 {
         return Interval { low: f64::NAN, high: f64::NAN };
     }
-    let mut draws = Resampler::new(SEED);
-    let mut times = vec![0_u32; count];
     let mut outcomes = Vec::with_capacity(resamples);
-    for _ in 0..resamples {
-        times.fill(0);
-        for _ in 0..count {
-            times[draws.index(count)] += 1;
-        }
-        outcomes.push(outcome(&times));
-    }
+    resample(count, resamples, |times| outcomes.push(outcome(times)));
     outcomes.sort_by(f64::total_cmp);
     Interval { low: quantile(&outcomes, TAIL), high: quantile(&outcomes, 1.0 - TAIL) }
 }

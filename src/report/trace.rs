@@ -62,7 +62,9 @@ pub fn draw(world: &World, trajectory: &Trajectory) -> String {
         }
         // It left forwards, and came from behind.
         mark(&mut floor, &pose(first), 180.0, "start");
-        mark(&mut floor, &pose(last), 90.0, "end");
+        if Vec2::new(last.x - first.x, last.y - first.y).length() > BESIDE {
+            mark(&mut floor, &pose(last), 90.0, "end");
+        }
     }
     legend(&mut floor, trajectory, &shown);
     floor.canvas.finish()
