@@ -32,12 +32,12 @@ pub(super) fn read(
             }
         };
         let noise = noise.map(|noise| laid_over(&noise, base)).transpose()?;
-        let world = world.map_or(Ok(0), |world| worlds.place(&world))?;
+        let world = world.map(|world| worlds.place(&world)).transpose()?;
         let placed = |world: usize| &worlds.placed[world].world;
-        check_rooms(placed(world), placed(0), place)?;
         for arm in arms {
-            check_rooms(placed(world), placed(arm.world), place)?;
-            check_root(placed(world), arm, place)?;
+            let own = world.unwrap_or(arm.world);
+            check_rooms(placed(own), placed(arm.world), place)?;
+            check_root(placed(own), arm, place)?;
         }
         alterations.push(Alteration { name: entry.key.clone(), world, noise });
     }

@@ -13,7 +13,25 @@ use super::{keys, mirror, robot, set};
 /// Name of the only arm of a config that has no `[arm.NAME]`.
 const BASE: &str = "base";
 /// What an arm may change.
-const ARM_KEYS: [&str; 5] = ["world", "root", "learning", "skill", "robot"];
+const ARM_KEYS: [&str; 6] = [LIKE, "world", "root", "learning", "skill", "robot"];
+/// Key of an arm that names the arm over which it is laid.
+const LIKE: &str = "like";
+
+/// An arm's table, and before it those of the arms that it is like.
+fn layers<'a>(own: &'a Node, arm: &Item<'a>) -> Result<Vec<&'a Node>, ConfigError> {
+    let arms = (Item { name: "arm".to_owned(), node: own }).table()?.all();
+    let names: Vec<&str> = arms.iter().map(|(entry, _)| entry.key.as_str()).collect();
+    let mut layers = vec![arm.node];
+    while let Some(like) = layers[0].get(LIKE) {
+        let item = Item { name: format!("{}.{LIKE}", arm.name), node: like };
+        let at = item.choice("arms", &names)?;
+        if layers.len() > names.len() {
+            return Err(item.error("the arms are like one another in a circle", "let one of them stand by itself"));
+        }
+        layers.insert(0, arms[at].1.node);
+    }
+    Ok(layers)
+}
 
 /// What the arms of a config are read from.
 pub(super) struct Arms<'a> {
@@ -68,7 +86,10 @@ impl Arms<'_> {
             small_name(entry, "an arm")?;
             self.check(&item)?;
             let mut tree = self.base.clone();
-            tree.merge(item.node.clone());
+            for layer in layers(own, &item)? {
+                tree.merge(layer.clone());
+            }
+            tree.remove(LIKE);
             trees.push((entry.key.clone(), tree));
         }
         Ok(trees)

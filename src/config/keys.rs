@@ -149,8 +149,9 @@ keys! {
     ROOT = "root", None, Other("the name of a skill"), Ours, "the skill at the top: only its tree is trained; if left out, the last skill that no other one is made of";
     SEED = "seed", Some("1993"), Whole(0, u32::MAX), Ours, "key of what all learners share: the teacher's bank and the planner's trials";
     SEEDS = "seeds", Some("'0..7'"), Other("ranges such as '0..7', '0..=6', '5' or '1,2,5..9', or a list of whole numbers"), Paper, "one learner per arm and seed; the paper has 7 runs";
-    EXTENDS = "extends", None, Other("the name of a config in the same folder"), Ours, "config over which this one is laid; all of that one but its arms, alterations, name and title";
+    EXTENDS = "extends", None, Other("the name of a config in the same folder"), Ours, "config over which this one is laid: all of that one but its name and title";
     ARMS = "arms", None, Other("a list of arms"), Ours, "the arms that are run; all if left out";
+    ARM_LIKE = "arm.*.like", None, Other("the name of an arm"), Ours, "arm over which this one is laid";
 
     EVALUATE_AT = "evaluate.at", Some("[0, 25, 50, 75, 100, 150, 200, 250, 300]"), Other("ascending whole numbers"), Ours, "trials of a skill after which it is tested; it always is after its last one";
     EVALUATE_EPISODES = "evaluate.episodes", Some("100"), Whole(1, 10_000), Ours, "greedy test trials each time";

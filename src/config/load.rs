@@ -74,7 +74,7 @@ pub fn load(path: &Path, overrides: &Overrides) -> Result<Plan, ConfigError> {
     Ok(Plan { name, source, title, run_seed, seeds, worlds, arms, alterations, evaluate, teacher, resolved })
 }
 
-/// A config's tree, laid over that of the config that it extends. Arms and alterations are each config's own.
+/// A config's tree, laid over that of the config that it extends.
 fn read(path: &Path) -> Result<Node, ConfigError> {
     let text = |path: &Path| {
         std::fs::read_to_string(path).map_err(|error| ConfigError::unreadable(path, "config file", &error))
@@ -93,7 +93,7 @@ fn read(path: &Path) -> Result<Node, ConfigError> {
     if base.get(keys::EXTENDS.name()).is_some() {
         return Err(item.error(format!("`{name}` itself extends another config"), "name that one instead"));
     }
-    for own in ["arm", "alter", keys::ARMS.name(), keys::NAME.name(), keys::TITLE.name()] {
+    for own in [keys::NAME.name(), keys::TITLE.name()] {
         base.remove(own);
     }
     base.merge(tree);

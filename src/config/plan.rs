@@ -92,8 +92,8 @@ pub struct Robot {
 pub struct Alteration {
     /// Key in the config.
     pub name: String,
-    /// Index of the floor plan in [`Plan::worlds`].
-    pub world: usize,
+    /// Index of the floor plan in [`Plan::worlds`], or none for each arm's own.
+    pub world: Option<usize>,
     /// Noise, or none for each arm's own.
     pub noise: Option<Noise>,
 }

@@ -156,7 +156,8 @@ impl Results<'_> {
                     variant: test.variant,
                     ..blank
                 };
-                let altered = test.variant.checked_sub(1).map(|number| self.plan.alterations[number as usize].world);
+                let altered =
+                    test.variant.checked_sub(1).and_then(|number| self.plan.alterations[number as usize].world);
                 let world = altered.unwrap_or(self.plan.arms[id.arm].world);
                 push(row, &self.plan.worlds[world].world, &test.rooms);
             }

@@ -165,7 +165,7 @@ impl Group {
         }
         let mut altered = Vec::new();
         for alteration in &plan.alterations {
-            let (_, mut other) = lay_out(&members, &plan.worlds[alteration.world].world)?;
+            let (_, mut other) = lay_out(&members, &plan.worlds[alteration.world.unwrap_or(first.world)].world)?;
             other.bank.push(0);
             altered.push(other);
         }

@@ -15,6 +15,8 @@ use crate::skill::encode::encode;
 
 /// Newton steps of a fit; it has settled long before.
 const ROUNDS: u32 = 50;
+/// Smallest share of a Newton step that is tried.
+const SMALLEST: f64 = 1.0e-6;
 /// Weight of the pull towards a flat curve: keeps a fit finite where values part success from failure cleanly.
 const RIDGE: f64 = 1.0e-3;
 
@@ -30,30 +32,60 @@ pub struct Fit {
 impl Fit {
     /// The curve through what was seen: best Q-value, and whether the trial achieved its goal.
     pub fn new(seen: &[(f64, bool)]) -> Self {
-        let (mut offset, mut slope) = (0.0, 1.0);
+        let mut fit = Self { offset: 0.0, slope: 0.0 };
+        let mut likelihood = fit.likelihood(seen);
         for _round in 0..ROUNDS {
-            // Gradient and curvature of the penalised log likelihood.
-            let (mut g0, mut g1) = (-RIDGE * offset, -RIDGE * slope);
-            let (mut h00, mut h01, mut h11) = (RIDGE, 0.0, RIDGE);
-            for (value, success) in seen {
-                let p = 1.0 / (1.0 + libm::exp(-(offset + slope * value)));
-                let error = f64::from(u8::from(*success)) - p;
-                let weight = p * (1.0 - p);
-                g0 += error;
-                g1 += error * value;
-                h00 += weight;
-                h01 += weight * value;
-                h11 += weight * value * value;
+            let (offset, slope) = fit.newton(seen);
+            // A full step may overshoot where values part success from failure cleanly.
+            let mut share = 1.0;
+            let mut next = fit;
+            let mut better = false;
+            while !better && share > SMALLEST {
+                next = Self { offset: fit.offset + share * offset, slope: fit.slope + share * slope };
+                better = next.likelihood(seen) > likelihood;
+                share *= 0.5;
             }
-            let determinant = h00 * h11 - h01 * h01;
-            if determinant <= 0.0 {
+            if !better {
                 break;
             }
-            // Half steps where a full one would overshoot: values lie in (-1, 1), so no honest slope is beyond this.
-            offset += ((h11 * g0 - h01 * g1) / determinant).clamp(-5.0, 5.0);
-            slope += ((h00 * g1 - h01 * g0) / determinant).clamp(-5.0, 5.0);
+            fit = next;
+            likelihood = fit.likelihood(seen);
         }
-        Self { offset, slope }
+        fit
+    }
+
+    fn probability(&self, value: f64) -> f64 {
+        1.0 / (1.0 + libm::exp(-(self.offset + self.slope * value)))
+    }
+
+    /// Log likelihood of what was seen, less the pull.
+    fn likelihood(&self, seen: &[(f64, bool)]) -> f64 {
+        let one = |(value, success): &(f64, bool)| {
+            let odds = self.offset + self.slope * value;
+            let lost = if *success { -odds } else { odds };
+            // ln(1 + e^x) without overflow.
+            -(lost.max(0.0) + libm::log1p(libm::exp(-lost.abs())))
+        };
+        seen.iter().map(one).sum::<f64>() - 0.5 * RIDGE * (self.offset * self.offset + self.slope * self.slope)
+    }
+
+    /// Newton's step from here.
+    fn newton(&self, seen: &[(f64, bool)]) -> (f64, f64) {
+        let (mut g0, mut g1) = (-RIDGE * self.offset, -RIDGE * self.slope);
+        let (mut h00, mut h01, mut h11) = (RIDGE, 0.0, RIDGE);
+        for (value, success) in seen {
+            let p = self.probability(*value);
+            let error = f64::from(u8::from(*success)) - p;
+            let weight = p * (1.0 - p);
+            g0 += error;
+            g1 += error * value;
+            h00 += weight;
+            h01 += weight * value;
+            h11 += weight * value * value;
+        }
+        // The pull keeps this above zero.
+        let determinant = h00 * h11 - h01 * h01;
+        ((h11 * g0 - h01 * g1) / determinant, (h00 * g1 - h01 * g0) / determinant)
     }
 
     /// The best Q-value from which on success is at least this probable; never, for a skill whose value says nothing.

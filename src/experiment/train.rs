@@ -193,7 +193,8 @@ fn alter(
         let count = plan.evaluate.episodes as usize;
         let episodes = backend.evaluate(Test { skill: root as u32, number: trials, episodes: count as u32 })?;
         for (index, result) in results.iter_mut().enumerate() {
-            let rooms = sums(&plan.worlds[alteration.world].world, &episodes[index * count..(index + 1) * count]);
+            let world = alteration.world.unwrap_or(plan.arms[result.id.arm].world);
+            let rooms = sums(&plan.worlds[world].world, &episodes[index * count..(index + 1) * count]);
             let (actions, variant) = (trained.cursors[index].actions, number as u32 + 1);
             result.tests.push(TestResult { skill: root as u32, trials, actions, variant, rooms });
         }

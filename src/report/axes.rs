@@ -1,6 +1,7 @@
 //! A plot's frame: scales, ticks, grid lines and titles.
 
 use super::canvas::{Anchor, Canvas, GREY, INK, PALE};
+use super::numbers::number;
 
 /// A linear axis from a value range to points on the canvas.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,7 +40,8 @@ pub fn draw(canvas: &mut Canvas, x: &Axis, y: &Axis) {
         canvas.line(&[(at, y.points.0), (at, y.points.0 + 5.0)], GREY, 1.0);
         canvas.text(&x.label(value), (at, y.points.0 + 15.0), 12.0, INK, Anchor::Middle);
     }
-    canvas.line(&[(x.points.0, y.points.0), (x.points.1, y.points.0)], GREY, 1.0);
+    let floor = y.place(0.0_f64.max(y.range.0));
+    canvas.line(&[(x.points.0, floor), (x.points.1, floor)], GREY, 1.0);
     let middle = |axis: &Axis| (axis.points.0 + axis.points.1) / 2.0;
     canvas.text(&x.title, (middle(x), y.points.0 + 36.0), 13.0, INK, Anchor::Middle);
     canvas.text_upwards(&y.title, (16.0, middle(y)), 13.0, INK);
@@ -68,19 +70,7 @@ pub fn upper_end(value: f64) -> f64 {
     if last >= value { last } else { value * 1.05 }
 }
 
-/// A number for people: thousands apart, no needless digits.
-pub fn number(value: f64) -> String {
-    if value.abs() < 1000.0 {
-        let text = format!("{value:.3}");
-        return text.trim_end_matches('0').trim_end_matches('.').to_owned();
-    }
-    let digits = format!("{:.0}", value.abs());
-    let mut text = String::from(if value < 0.0 { "-" } else { "" });
-    for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i) % 3 == 0 {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
+/// The other end: 0, or below the lowest value if that is negative.
+pub fn lower_end(value: f64) -> f64 {
+    if value < 0.0 { -upper_end(-value) } else { 0.0 }
 }

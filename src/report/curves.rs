@@ -1,4 +1,4 @@
-//! Curves with bands over seeds, labelled at their ends.
+//! Curves with bands over seeds: a large figure labels them at their ends, a small one in a legend below.
 
 use super::axes::{self, Axis};
 use super::canvas::{Anchor, Canvas, GREY, INK, text_width};
@@ -6,7 +6,7 @@ use super::statistics::Interval;
 use plotters::style::RGBColor;
 
 /// Okabe and Ito's colours, which colour-blind readers can tell apart, without the yellow that white paper swallows.
-const COLORS: [RGBColor; 7] = [
+pub(super) const COLORS: [RGBColor; 7] = [
     RGBColor(0x00, 0x72, 0xb2),
     RGBColor(0xd5, 0x5e, 0x00),
     RGBColor(0x00, 0x9e, 0x73),
@@ -18,16 +18,16 @@ const COLORS: [RGBColor; 7] = [
 /// More curves than this cannot be told apart.
 pub const MOST_CURVES: usize = 12;
 
-const WIDTH: f64 = 760.0;
-const HEIGHT: f64 = 450.0;
-const LEFT: f64 = 76.0;
-const TOP: f64 = 66.0;
-const BOTTOM: f64 = 86.0;
+/// More curves than this cannot be told apart in a small figure.
+pub const MOST_SMALL: usize = 7;
+
 /// Size of the curves' labels and the room that each takes.
 const LABEL: f64 = 13.0;
 const LABEL_ROOM: f64 = 17.0;
 /// Length of the line that leads from a curve's end to its label.
 const LEADER: f64 = 22.0;
+/// Room that a note takes.
+const NOTE_ROOM: f64 = 16.0;
 
 /// A point of a curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,36 +68,98 @@ pub struct Figure {
     pub bound: Option<(String, f64)>,
     /// At most [`MOST_CURVES`] are drawn.
     pub curves: Vec<Curve>,
+    /// Drawn small, to stand beside another figure.
+    pub small: bool,
+    /// Ends of the axes, where figures are to be compared; as the curves need if not given.
+    pub ends: Option<Ends>,
+}
+
+/// How far the axes reach.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ends {
+    /// Greatest x; the least is 0.
+    pub x: f64,
+    /// Least and greatest y.
+    pub y: (f64, f64),
+}
+
+impl Ends {
+    /// What some curves need, of which `percent` are shares.
+    pub fn of<'a>(curves: impl IntoIterator<Item = &'a Curve>, percent: bool) -> Self {
+        let mut ends = Self { x: 0.0, y: (0.0, 0.0) };
+        for point in curves.into_iter().flat_map(|curve| &curve.points) {
+            ends.x = ends.x.max(point.x);
+            ends.y = (ends.y.0.min(point.band.low.min(point.y)), ends.y.1.max(point.band.high.max(point.y)));
+        }
+        ends.y = if percent { (0.0, 1.0) } else { ends.y };
+        ends
+    }
+}
+
+/// Where the parts of a figure lie.
+struct Layout {
+    width: f64,
+    height: f64,
+    left: f64,
+    right: f64,
+    top: f64,
+    bottom: f64,
+    title: f64,
+    subtitle: f64,
+}
+
+impl Layout {
+    fn new(figure: &Figure, curves: &[Curve]) -> Self {
+        if figure.small {
+            let rows = (curves.len() + usize::from(figure.bound.is_some())).div_ceil(2);
+            let bottom = 64.0 + LABEL_ROOM * rows as f64 + NOTE_ROOM * figure.notes.len() as f64;
+            return Self {
+                width: 470.0,
+                height: 298.0 + bottom,
+                left: 66.0,
+                right: 16.0,
+                top: 62.0,
+                bottom,
+                title: 15.0,
+                subtitle: 11.5,
+            };
+        }
+        let bound = figure.bound.iter().map(|(label, _)| label);
+        let widths = curves.iter().map(|curve| &curve.label).chain(bound).map(|label| text_width(label, LABEL));
+        let right = LEADER + 22.0 + widths.fold(60.0, f64::max).min(300.0);
+        Self { width: 760.0, height: 450.0, left: 76.0, right, top: 66.0, bottom: 86.0, title: 18.0, subtitle: 12.5 }
+    }
 }
 
 /// Draws the figure as SVG.
 pub fn draw(figure: &Figure) -> String {
-    let curves = &figure.curves[..figure.curves.len().min(MOST_CURVES)];
-    let bound_label = figure.bound.iter().map(|(label, _)| label);
-    let widest = curves.iter().map(|curve| &curve.label).chain(bound_label).map(|label| text_width(label, LABEL));
-    let right = LEADER + 22.0 + widest.fold(60.0, f64::max).min(300.0);
-    let all = || curves.iter().flat_map(|curve| &curve.points);
-    let high_x = all().map(|point| point.x).fold(0.0, f64::max);
-    let high_y = all().map(|point| point.band.high.max(point.y)).chain(figure.bound.iter().map(|bound| bound.1));
-    let high_y = if figure.percent { 1.0 } else { axes::upper_end(high_y.fold(0.0, f64::max)) };
+    let most = if figure.small { MOST_SMALL } else { MOST_CURVES };
+    let curves = &figure.curves[..figure.curves.len().min(most)];
+    let layout = Layout::new(figure, curves);
+    let mut ends = figure.ends.unwrap_or_else(|| Ends::of(curves, figure.percent));
+    if let Some((_, bound)) = figure.bound {
+        ends.y = (ends.y.0.min(bound), ends.y.1.max(bound));
+    }
     let x = Axis {
         title: figure.x_title.clone(),
-        range: (0.0, if high_x > 0.0 { high_x } else { 1.0 }),
-        points: (LEFT, WIDTH - right),
+        range: (0.0, if ends.x > 0.0 { ends.x } else { 1.0 }),
+        points: (layout.left, layout.width - layout.right),
         percent: false,
     };
     let y = Axis {
         title: figure.y_title.clone(),
-        range: (0.0, high_y),
-        points: (HEIGHT - BOTTOM, TOP),
+        range: (axes::lower_end(ends.y.0), axes::upper_end(ends.y.1)),
+        points: (layout.height - layout.bottom, layout.top),
         percent: figure.percent,
     };
-    let mut canvas = Canvas::new(WIDTH, HEIGHT, &figure.title);
-    canvas.text(&figure.title, (16.0, 22.0), 18.0, INK, Anchor::Start);
-    canvas.text(&figure.subtitle, (16.0, 43.0), 12.5, GREY, Anchor::Start);
+    let mut canvas = Canvas::new(layout.width, layout.height, &figure.title);
+    canvas.text(&figure.title, (16.0, 4.0 + layout.title), layout.title, INK, Anchor::Start);
+    canvas.text(&figure.subtitle, (16.0, layout.top - 23.0), layout.subtitle, GREY, Anchor::Start);
     axes::draw(&mut canvas, &x, &y);
+    let notes = if figure.small { figure.notes.len() } else { 2 };
+    let first_note = layout.height + 4.0 - NOTE_ROOM * notes as f64;
     for (i, note) in figure.notes.iter().enumerate() {
-        canvas.text(note, (16.0, HEIGHT - 27.0 + 16.0 * i as f64), 11.5, GREY, Anchor::Start);
+        canvas.text(note, (16.0, first_note + NOTE_ROOM * i as f64), 11.5, GREY, Anchor::Start);
     }
     for (i, curve) in curves.iter().enumerate() {
         draw_band(&mut canvas, &x, &y, &curve.points, COLORS[i % COLORS.len()]);
@@ -109,13 +171,25 @@ pub fn draw(figure: &Figure) -> String {
     for (i, curve) in curves.iter().enumerate() {
         let color = COLORS[i % COLORS.len()];
         let points: Vec<_> = curve.points.iter().map(|point| (x.place(point.x), y.place(point.y))).collect();
-        canvas.line(&points, color, 2.0);
+        match flat(curve) {
+            true => canvas.dashes(points[0], (x.points.1, points[0].1), color, 1.6, 3.0),
+            false => canvas.line(&points, color, 2.0),
+        }
         for &point in &points {
             marker(&mut canvas, i, point, color);
         }
     }
-    draw_labels(&mut canvas, figure, curves, &x, &y);
+    if figure.small {
+        draw_legend(&mut canvas, figure, curves, (&x, &y));
+    } else {
+        draw_labels(&mut canvas, figure, curves, (&x, &y));
+    }
     canvas.finish()
+}
+
+/// Whether a curve is a single test before any trial: of an arm that does not learn, so it is drawn across the figure.
+fn flat(curve: &Curve) -> bool {
+    curve.points.len() == 1 && curve.points[0].x == 0.0
 }
 
 fn draw_band(canvas: &mut Canvas, x: &Axis, y: &Axis, points: &[Point], color: RGBColor) {
@@ -141,8 +215,33 @@ fn marker(canvas: &mut Canvas, index: usize, (x, y): (f64, f64), color: RGBColor
     canvas.polygon(&outline, color, 1.0);
 }
 
+/// Two columns below the x axis.
+fn draw_legend(canvas: &mut Canvas, figure: &Figure, curves: &[Curve], (x, y): (&Axis, &Axis)) {
+    let bound = figure.bound.as_ref().map(|(label, _)| (label, None));
+    let entries = curves.iter().enumerate().map(|(i, curve)| (&curve.label, Some(i))).chain(bound);
+    for (number, (label, curve)) in entries.enumerate() {
+        let column = (x.points.1 - x.points.0) / 2.0;
+        let left = x.points.0 + column * (number % 2) as f64;
+        let at = y.points.0 + 60.0 + LABEL_ROOM * (number / 2) as f64;
+        key(canvas, curve, (left, at));
+        canvas.text(label, (left + 26.0, at), LABEL - 1.0, INK, Anchor::Start);
+    }
+}
+
+/// A curve's line and marker, or the bound's dashes, as a legend shows them.
+fn key(canvas: &mut Canvas, curve: Option<usize>, (left, at): (f64, f64)) {
+    match curve {
+        Some(i) => {
+            let color = COLORS[i % COLORS.len()];
+            canvas.line(&[(left, at), (left + 20.0, at)], color, 2.0);
+            marker(canvas, i, (left + 10.0, at), color);
+        }
+        None => canvas.dashes((left, at), (left + 20.0, at), INK, 1.4, 3.0),
+    }
+}
+
 /// Labels stand right of the axes in the order of the curves' ends, pushed apart where they would overlap.
-fn draw_labels(canvas: &mut Canvas, figure: &Figure, curves: &[Curve], x: &Axis, y: &Axis) {
+fn draw_labels(canvas: &mut Canvas, figure: &Figure, curves: &[Curve], (x, y): (&Axis, &Axis)) {
     struct Label<'figure> {
         text: &'figure str,
         curve: Option<usize>,
@@ -151,7 +250,8 @@ fn draw_labels(canvas: &mut Canvas, figure: &Figure, curves: &[Curve], x: &Axis,
     let mut labels = Vec::new();
     for (i, curve) in curves.iter().enumerate() {
         if let Some(last) = curve.points.last() {
-            labels.push(Label { text: &curve.label, curve: Some(i), end: (x.place(last.x), y.place(last.y)) });
+            let end = if flat(curve) { x.points.1 } else { x.place(last.x) };
+            labels.push(Label { text: &curve.label, curve: Some(i), end: (end, y.place(last.y)) });
         }
     }
     if let Some((text, value)) = &figure.bound {
@@ -160,7 +260,7 @@ fn draw_labels(canvas: &mut Canvas, figure: &Figure, curves: &[Curve], x: &Axis,
     labels.sort_by(|a, b| a.end.1.total_cmp(&b.end.1));
     let ends: Vec<f64> = labels.iter().map(|label| label.end.1).collect();
     let left = x.points.1 + LEADER;
-    for (label, at) in labels.iter().zip(spread(&ends, LABEL_ROOM, (TOP - 8.0, y.points.0))) {
+    for (label, at) in labels.iter().zip(spread(&ends, LABEL_ROOM, (y.points.1 - 8.0, y.points.0))) {
         let color = label.curve.map_or(INK, |i| COLORS[i % COLORS.len()]);
         // A leader that crosses the plot would look like a curve; there the marker alone tells whose label it is.
         if label.end.0 > x.points.1 - 6.0 {

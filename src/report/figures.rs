@@ -1,10 +1,11 @@
-//! Which figures a report has, and what each shows.
+//! Figures of each skill and of the world.
 
 use super::curves::{self, Curve, Figure, MOST_CURVES, Point};
-use super::floor;
+use super::numbers::number;
 use super::statistics::{BAND_RESAMPLES, bootstrap, mean};
 use super::summary::{Cell, Score, Series, Skill, Summary};
-use crate::record::PlaceReading;
+use super::{floor, trace};
+use crate::record::{PlaceReading, Trajectory};
 use crate::world::World;
 use rayon::prelude::*;
 
@@ -13,33 +14,56 @@ use rayon::prelude::*;
 pub struct Drawing {
     /// File name without its ending.
     pub name: String,
-    /// The skill that it is about, or none for the world.
-    pub skill: Option<String>,
+    /// Where on the page it stands.
+    pub section: Section,
     /// The SVG document.
     pub svg: String,
 }
 
-/// What a curve is drawn from.
-struct Measure {
-    file: &'static str,
-    heading: &'static str,
-    subtitle: &'static str,
-    y_title: &'static str,
-    percent: bool,
-    against_actions: bool,
-    value: fn(&Score) -> f64,
+/// A part of the page that has figures.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Section {
+    /// The paper's Figure 2, with its seven seeds.
+    Paper,
+    /// The same, with all seeds.
+    All,
+    /// Learning curves over trials and over actions.
+    Budget,
+    /// Success by starting room.
+    Rooms,
+    /// Example trials.
+    Trajectories,
+    /// Floor plans of alterations and of arms elsewhere.
+    Elsewhere,
+    /// The skill of this name.
+    Skill(String),
+    /// The floor plan and the sensors.
+    World,
 }
 
-const MEASURES: [Measure; 3] = [
-    Measure {
-        file: "learning",
-        heading: "success against training trials",
-        subtitle: "Share of greedy test trials that ended as achieved.",
-        y_title: "test trials achieved",
-        percent: true,
-        against_actions: false,
-        value: Score::success,
-    },
+/// What a curve is drawn from.
+pub(super) struct Measure {
+    pub(super) file: &'static str,
+    pub(super) heading: &'static str,
+    pub(super) subtitle: &'static str,
+    pub(super) y_title: &'static str,
+    pub(super) percent: bool,
+    pub(super) against_actions: bool,
+    pub(super) value: fn(&Score) -> f64,
+}
+
+pub(super) const SUCCESS: Measure = Measure {
+    file: "learning",
+    heading: "success against training trials",
+    subtitle: "Share of greedy test trials that ended as achieved.",
+    y_title: "test trials achieved",
+    percent: true,
+    against_actions: false,
+    value: Score::success,
+};
+
+const ENDING: [Measure; 3] = [
+    SUCCESS,
     Measure {
         file: "steps",
         heading: "steps of a test trial against training trials",
@@ -53,47 +77,79 @@ const MEASURES: [Measure; 3] = [
         file: "actions",
         heading: "success against executed actions",
         subtitle: "Share of greedy test trials that ended as achieved. Actions: in teaching and for child skills too.",
-        y_title: "test trials achieved",
-        percent: true,
         against_actions: true,
-        value: Score::success,
+        ..SUCCESS
     },
 ];
 
-/// All figures of curves.
+/// Of skills that never end, as following a wall: trials are as long as their limit, and none is achieved.
+const UNENDING: [Measure; 1] = [Measure {
+    file: "return",
+    heading: "return of a test trial against training trials",
+    subtitle: "Mean discounted return of a greedy test trial, in the config's units of reward.",
+    y_title: "return per test trial",
+    percent: false,
+    against_actions: false,
+    value: Score::return_per_trial,
+}];
+
+/// Curves of every skill that was tested more than once.
 pub fn learning(summary: &Summary) -> Vec<Drawing> {
-    let trained = summary.skills.iter().filter(|skill| !skill.series.is_empty());
-    let figures: Vec<_> = trained.flat_map(|skill| MEASURES.iter().map(move |measure| (skill, measure))).collect();
+    let curved = |skill: &&Skill| skill.series.iter().any(|series| series.cells.len() > 1);
+    let measures = |skill: &Skill| if skill.never_ends() { &UNENDING[..] } else { &ENDING };
+    let skills = summary.skills.iter().filter(curved);
+    let figures: Vec<_> =
+        skills.flat_map(|skill| measures(skill).iter().map(move |measure| (skill, measure))).collect();
     figures.into_par_iter().map(|(skill, measure)| draw(skill, measure)).collect()
 }
 
 /// The floor plan and the sensors at its places.
 pub fn floor(world: &World, places: &[PlaceReading]) -> Vec<Drawing> {
-    let mut drawings = vec![Drawing { name: "world".into(), skill: None, svg: floor::draw_world(world) }];
+    let mut drawings =
+        vec![Drawing { name: "world".into(), section: Section::World, svg: floor::draw_world(world, floor::LARGE) }];
     for reading in places {
         let place = &reading.place;
         drawings.push(Drawing {
             name: format!("sonar-{}", file_word(place)),
-            skill: None,
+            section: Section::World,
             svg: floor::draw_sonar(world, reading),
         });
         drawings.push(Drawing {
             name: format!("light-{}", file_word(place)),
-            skill: None,
+            section: Section::World,
             svg: floor::draw_light(world, reading),
         });
     }
     drawings
 }
 
+/// Another floor plan of the run.
+pub fn elsewhere(world: &World, file: &str) -> Drawing {
+    let name = file.trim_start_matches("worlds/").trim_end_matches(".toml");
+    let name = format!("world-{}", file_word(name));
+    Drawing { name, section: Section::Elsewhere, svg: floor::draw_world(world, floor::SMALL) }
+}
+
+/// An example trial.
+pub fn way(trajectory: &Trajectory, world: &World) -> Drawing {
+    let name = format!("trial-{}-{}", file_word(&trajectory.arm), file_word(&trajectory.place));
+    Drawing { name, section: Section::Trajectories, svg: trace::draw(world, trajectory) }
+}
+
 fn draw(skill: &Skill, measure: &Measure) -> Drawing {
-    let mut notes = vec![seeds_note(skill)];
-    if skill.series.len() > MOST_CURVES {
-        notes.push(format!("The first {MOST_CURVES} of {} series; the table holds all.", skill.series.len()));
+    let all = skill.distinct();
+    let mut notes = vec![seeds_note(&skill.series)];
+    if all.len() > MOST_CURVES {
+        notes.push(format!("The first {MOST_CURVES} of {} series; the table holds all.", all.len()));
     } else if measure.against_actions {
         notes.push("A point lies at the mean number of actions over seeds.".into());
+    } else if all.iter().any(|(_, copies)| !copies.is_empty()) {
+        notes.push("+ a number: so many other arms have the same numbers: they learned the skill together.".into());
     }
-    let shown = &skill.series[..skill.series.len().min(MOST_CURVES)];
+    let curves = all
+        .iter()
+        .take(MOST_CURVES)
+        .map(|(series, copies)| Curve { label: with_copies(series, copies), ..curve(series, measure) });
     let figure = Figure {
         title: format!("{}: {}", skill.name, measure.heading),
         subtitle: measure.subtitle.into(),
@@ -101,17 +157,24 @@ fn draw(skill: &Skill, measure: &Measure) -> Drawing {
         x_title: if measure.against_actions { "executed actions" } else { "training trials" }.into(),
         y_title: measure.y_title.into(),
         percent: measure.percent,
-        bound: skill.planner.as_ref().map(|score| ("planner (bound)".into(), (measure.value)(score))),
-        curves: shown.iter().map(|series| curve(series, measure)).collect(),
+        bound: skill.bounds.first().map(|bound| ("planner (bound)".into(), (measure.value)(&bound.score))),
+        curves: curves.collect(),
+        small: false,
+        ends: None,
     };
     Drawing {
         name: format!("{}-{}", measure.file, file_word(&skill.name)),
-        skill: Some(skill.name.clone()),
+        section: Section::Skill(skill.name.clone()),
         svg: curves::draw(&figure),
     }
 }
 
-fn curve(series: &Series, measure: &Measure) -> Curve {
+/// A series' label, with the number of arms that have its numbers too.
+pub(super) fn with_copies(series: &Series, copies: &[&str]) -> String {
+    if copies.is_empty() { series.label.clone() } else { format!("{} +{}", series.label, copies.len()) }
+}
+
+pub(super) fn curve(series: &Series, measure: &Measure) -> Curve {
     let point = |cell: &Cell| {
         let values = cell.values(measure.value);
         let actions = mean(&cell.values(|score| f64::from(score.actions)));
@@ -125,17 +188,17 @@ fn curve(series: &Series, measure: &Measure) -> Curve {
 }
 
 /// Says how many seeds there are and what the bands mean.
-fn seeds_note(skill: &Skill) -> String {
-    let counts = || skill.series.iter().map(|series| series.last().scores.len());
+fn seeds_note(series: &[Series]) -> String {
+    let counts = || series.iter().map(|series| series.last().scores.len());
     let (least, most) = (counts().min().unwrap_or(0), counts().max().unwrap_or(0));
     let seeds = if least == most { format!("n = {most} seeds") } else { format!("n = {least} to {most} seeds") };
     format!(
         "Lines: mean over {seeds} per arm. Bands: 95% percentile bootstrap interval of the mean ({} resamples of seeds).",
-        super::axes::number(BAND_RESAMPLES as f64)
+        number(BAND_RESAMPLES as f64)
     )
 }
 
 /// A name as part of a file name: what could mislead a file system becomes `-`.
-fn file_word(name: &str) -> String {
+pub(super) fn file_word(name: &str) -> String {
     name.chars().map(|c| if c.is_alphanumeric() || matches!(c, '-' | '_' | '+') { c } else { '-' }).collect()
 }

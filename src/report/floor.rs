@@ -9,9 +9,11 @@ use plotters::style::RGBColor;
 const MARGIN: f64 = 34.0;
 const TOP: f64 = 62.0;
 const BOTTOM: f64 = 44.0;
-/// Points that the longer side of the floor takes.
-const LONGER_SIDE: f64 = 560.0;
-/// Shortest width that holds the headings.
+/// Points that the longer side of a large floor takes.
+pub(super) const LARGE: f64 = 560.0;
+/// The same of one of three side by side.
+pub(super) const SMALL: f64 = 340.0;
+/// Shortest width that holds the headings of a large floor.
 const NARROWEST: f64 = 440.0;
 
 const SOLID: RGBColor = RGBColor(0xc8, 0xc8, 0xc8);
@@ -21,21 +23,22 @@ const ROBOT: RGBColor = RGBColor(0x00, 0x72, 0xb2);
 const RAY: RGBColor = RGBColor(0xd5, 0x5e, 0x00);
 const ROOM: RGBColor = RGBColor(0xb4, 0xb4, 0xb4);
 
-/// Draws the floor plan with its rooms, doors, charger, light and places.
-pub fn draw_world(world: &World) -> String {
+/// Draws the floor plan with its rooms, doors, charger, light and places, in [`LARGE`] or [`SMALL`] size.
+pub fn draw_world(world: &World, side: f64) -> String {
     let ring = if world.light.is_some() { " Dashed: range of the light." } else { "" };
-    let subtitle = format!("{} by {} inches. Arrows: named places.{ring}", world.size.x, world.size.y);
-    let mut floor = Floor::new(world, &format!("Floor plan: {}", world.name), &subtitle);
+    let legend = if side < LARGE { String::new() } else { format!(" Arrows: named places.{ring}") };
+    let subtitle = format!("{} by {} inches.{legend}", world.size.x, world.size.y);
+    let mut floor = Floor::new(world, &format!("Floor plan: {}", world.name), &subtitle, (side, 0.0));
     if let Some(light) = &world.light {
         floor.range(world, light);
     }
     floor.rooms(world);
     floor.solids(world);
     for (name, pose) in &world.places {
-        floor.robot(pose);
+        floor.robot(pose, ROBOT);
         let behind = Vec2::from_angle(pose.heading.to_radians()) * -(ROBOT_RADIUS + 9.0);
         let at = floor.at(Vec2::new(pose.x, pose.y) + behind);
-        floor.canvas.text(name, at, 14.0, INK, Anchor::Middle);
+        floor.canvas.text(name, at, if side < LARGE { 11.5 } else { 14.0 }, INK, Anchor::Middle);
     }
     floor.canvas.finish()
 }
@@ -43,7 +46,7 @@ pub fn draw_world(world: &World) -> String {
 /// Draws 24 sonar rays of the measured lengths around the robot (Figure 1b).
 pub fn draw_sonar(world: &World, reading: &PlaceReading) -> String {
     let subtitle = "24 noise-free sonar readings, every 15 degrees from the heading, drawn to scale.";
-    let mut floor = Floor::new(world, &format!("Sonar at {}", reading.place), subtitle);
+    let mut floor = Floor::new(world, &format!("Sonar at {}", reading.place), subtitle, (LARGE, 0.0));
     floor.solids(world);
     let pose = pose(reading);
     for (i, &length) in reading.sonar.iter().enumerate() {
@@ -51,7 +54,7 @@ pub fn draw_sonar(world: &World, reading: &PlaceReading) -> String {
         floor.canvas.line(&[floor.at(Vec2::new(pose.x, pose.y)), end], RAY, 1.0);
         floor.canvas.disc(end, 2.2, RAY);
     }
-    floor.robot(&pose);
+    floor.robot(&pose, ROBOT);
     floor.canvas.finish()
 }
 
@@ -60,7 +63,7 @@ pub fn draw_light(world: &World, reading: &PlaceReading) -> String {
     let lit = reading.light.iter().filter(|&&bit| bit != 0).count();
     let subtitle =
         format!("24 light bearings, every 15 degrees from the heading: {lit} lit (filled), the others dark.");
-    let mut floor = Floor::new(world, &format!("Light at {}", reading.place), &subtitle);
+    let mut floor = Floor::new(world, &format!("Light at {}", reading.place), &subtitle, (LARGE, 0.0));
     floor.solids(world);
     let pose = pose(reading);
     for (i, &bit) in reading.light.iter().enumerate() {
@@ -76,7 +79,7 @@ pub fn draw_light(world: &World, reading: &PlaceReading) -> String {
         }
         floor.canvas.ring(far, 4.5, GREY, 0.8);
     }
-    floor.robot(&pose);
+    floor.robot(&pose, ROBOT);
     floor.canvas.finish()
 }
 
@@ -108,26 +111,29 @@ fn clearest_point(room: &Rect, world: &World) -> Vec2 {
 }
 
 /// A canvas with the floor's own coordinates.
-struct Floor {
-    canvas: Canvas,
+pub(super) struct Floor {
+    pub(super) canvas: Canvas,
+    pub(super) left: f64,
+    pub(super) bottom: f64,
     scale: f64,
-    left: f64,
-    bottom: f64,
     size: (f64, f64),
 }
 
 impl Floor {
-    fn new(world: &World, title: &str, subtitle: &str) -> Self {
+    /// A surface of [`LARGE`] or [`SMALL`] size, with `below` points to spare under the key.
+    pub(super) fn new(world: &World, title: &str, subtitle: &str, (side, below): (f64, f64)) -> Self {
         let (width, height) = (f64::from(world.size.x), f64::from(world.size.y));
-        let scale = LONGER_SIDE / width.max(height).max(1.0);
-        let size = ((width * scale + 2.0 * MARGIN).max(NARROWEST), height * scale + TOP + BOTTOM);
+        let scale = side / width.max(height).max(1.0);
+        let size =
+            ((width * scale + 2.0 * MARGIN).max(NARROWEST * side / LARGE), height * scale + TOP + BOTTOM + below);
         let mut canvas = Canvas::new(size.0, size.1, title);
-        canvas.text(title, (MARGIN, 22.0), 18.0, INK, Anchor::Start);
+        canvas.text(title, (MARGIN, 22.0), if side < LARGE { 14.5 } else { 18.0 }, INK, Anchor::Start);
         canvas.text(subtitle, (MARGIN, 44.0), 11.5, GREY, Anchor::Start);
         Self { canvas, scale, left: (size.0 - width * scale) / 2.0, bottom: TOP + height * scale, size }
     }
 
-    fn at(&self, point: Vec2) -> (f64, f64) {
+    /// Where a point of the floor lies on the canvas.
+    pub(super) fn at(&self, point: Vec2) -> (f64, f64) {
         (self.left + f64::from(point.x) * self.scale, self.bottom - f64::from(point.y) * self.scale)
     }
 
@@ -138,7 +144,7 @@ impl Floor {
     fn rooms(&mut self, world: &World) {
         for room in &world.rooms {
             let clear = self.at(clearest_point(&room.area, world));
-            self.canvas.text(&room.name, clear, 34.0, ROOM, Anchor::Middle);
+            self.canvas.text(&room.name, clear, 25.0 * self.scale, ROOM, Anchor::Middle);
         }
         for door in &world.doors {
             let along = Vec2::new(-door.normal.y, door.normal.x) * door.width / 2.0;
@@ -155,7 +161,8 @@ impl Floor {
         }
     }
 
-    fn solids(&mut self, world: &World) {
+    /// Walls, boxes, charger and light, with the key to them.
+    pub(super) fn solids(&mut self, world: &World) {
         // The lines come first, so that none shows inside a solid where two boxes overlap.
         for segment in &world.segments {
             let (a, b) = (self.at(segment.a), self.at(segment.b));
@@ -209,17 +216,18 @@ impl Floor {
         }
     }
 
-    fn robot(&mut self, pose: &Pose) {
+    /// The robot's body, and an arrow ahead of it.
+    pub(super) fn robot(&mut self, pose: &Pose, color: RGBColor) {
         let centre = Vec2::new(pose.x, pose.y);
         let forward = Vec2::from_angle(pose.heading.to_radians());
         let side = forward.perp();
         let body = self.at(centre);
         self.canvas.disc(body, f64::from(ROBOT_RADIUS) * self.scale, RGBColor(0xff, 0xff, 0xff));
-        self.canvas.ring(body, f64::from(ROBOT_RADIUS) * self.scale, ROBOT, 1.6);
+        self.canvas.ring(body, f64::from(ROBOT_RADIUS) * self.scale, color, 1.6);
         let tip = centre + forward * (ROBOT_RADIUS + 12.0);
-        self.canvas.line(&[body, self.at(tip - forward * 6.0)], ROBOT, 2.0);
+        self.canvas.line(&[body, self.at(tip - forward * 6.0)], color, 2.0);
         let head =
             [tip, tip - forward * 9.0 + side * 4.5, tip - forward * 9.0 - side * 4.5].map(|point| self.at(point));
-        self.canvas.polygon(&head, ROBOT, 1.0);
+        self.canvas.polygon(&head, color, 1.0);
     }
 }

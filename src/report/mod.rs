@@ -2,22 +2,32 @@
 //!
 //! The same folder always gives the same bytes. Nothing here reaches back into the simulation.
 
+pub mod alterations;
 pub mod axes;
 pub mod canvas;
+pub mod claims;
+pub mod comparison;
 pub mod curves;
+pub mod figure2;
 pub mod figures;
 pub mod floor;
+pub mod gallery;
+pub mod numbers;
 pub mod page;
 pub mod raster;
 pub mod resample;
+pub mod results;
+pub mod rooms;
 pub mod statistics;
 pub mod summary;
 pub mod text;
+pub mod trace;
+pub mod training;
 
 use crate::config::ConfigError;
-use crate::record::{FinishedRun, RecordError, atomic, folder, places, tables};
-use crate::world::load;
+use crate::record::{FinishedRun, RecordError, atomic, folder};
 use rayon::prelude::*;
+use results::Results;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -49,18 +59,9 @@ pub enum ReportError {
 pub fn write(dir: &Path) -> Result<Vec<PathBuf>, ReportError> {
     let run = FinishedRun::read(dir)?;
     let _lock = folder::lock(dir)?;
-    let world = load::parse(run.world(), &dir.join(folder::WORLD))?;
-    let summary = summarise(&run)?;
-    let readings = match run.path(places::FILE) {
-        Some(path) => {
-            let bytes = fs::read(&path).map_err(RecordError::unreadable(&path))?;
-            places::read_places(&bytes, &path)?
-        }
-        None => Vec::new(),
-    };
-    let mut drawings = figures::learning(&summary);
-    drawings.extend(figures::floor(&world, &readings));
-    let page = page::render(&run, &summary, &drawings)?;
+    let results = Results::read(&run)?;
+    let drawings = gallery::draw(&run, &results)?;
+    let page = page::render(&run, &results, &drawings)?;
 
     let folder = dir.join(FIGURES);
     fs::create_dir_all(&folder).map_err(|source| RecordError::NotCommitted { path: folder.clone(), source })?;
@@ -85,13 +86,6 @@ pub fn write(dir: &Path) -> Result<Vec<PathBuf>, ReportError> {
 /// # Errors
 /// If the folder is not a complete run or is damaged.
 pub fn text(dir: &Path) -> Result<String, ReportError> {
-    Ok(text::table(&summarise(&FinishedRun::read(dir)?)?))
-}
-
-fn summarise(run: &FinishedRun) -> Result<summary::Summary, ReportError> {
-    let (names, rows) = match run.path(tables::EVALUATIONS) {
-        Some(path) => tables::read_evaluations(&path)?,
-        None => Default::default(),
-    };
-    Ok(summary::summarise(&names, &rows, &run.manifest().provenance.seeds))
+    let results = Results::read(&FinishedRun::read(dir)?)?;
+    Ok(text::table(&results.summary, &results.claims))
 }

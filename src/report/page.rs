@@ -1,16 +1,19 @@
 //! The HTML page: numbers turned into text, then put into the template.
 
-use super::ReportError;
-use super::axes::number;
-use super::figures::Drawing;
+use super::claims::{Claim, Verdict};
+use super::comparison::Comparison;
+use super::figures::{Drawing, Section, with_copies};
+use super::numbers::{number, percent, percent_range, percent_with, points_with, with};
+use super::results::Results;
 use super::statistics::{
-    FEW_SEEDS, Interval, TABLE_RESAMPLES, bootstrap, interquartile_mean, mean, paired_difference, share_below, sorted,
-    wilson,
+    FEW_SEEDS, TABLE_RESAMPLES, bootstrap, interquartile_mean, mean, paired_difference, share_below, sorted, wilson,
 };
-use super::summary::{Cell, Score, Series, Skill, Summary};
+use super::summary::{Bound, Cell, Score, Series, Skill, Summary, paired};
 use super::text::EARLY_TRIALS;
+use super::{ReportError, alterations, figure2, rooms};
 use crate::record::FinishedRun;
 use minijinja::{AutoEscape, Environment, UndefinedBehavior, Value, context};
+use rayon::prelude::*;
 
 /// Success that counts as having learned, in the table of trials to criterion.
 const CRITERION: f64 = 0.8;
@@ -19,24 +22,30 @@ const CRITERION: f64 = 0.8;
 ///
 /// # Errors
 /// [`ReportError::Page`] if the template and this code disagree.
-pub fn render(run: &FinishedRun, summary: &Summary, figures: &[Drawing]) -> Result<String, ReportError> {
-    fill(run, summary, figures).map_err(|error| ReportError::Page(format!("{error:#}")))
+pub fn render(run: &FinishedRun, results: &Results, figures: &[Drawing]) -> Result<String, ReportError> {
+    fill(run, results, figures).map_err(|error| ReportError::Page(format!("{error:#}")))
 }
 
-fn fill(run: &FinishedRun, summary: &Summary, figures: &[Drawing]) -> Result<String, minijinja::Error> {
+fn fill(run: &FinishedRun, results: &Results, figures: &[Drawing]) -> Result<String, minijinja::Error> {
     let mut environment = Environment::new();
     environment.set_auto_escape_callback(|_| AutoEscape::Html);
     // A name that the template misspells is an error, not an empty cell.
     environment.set_undefined_behavior(UndefinedBehavior::Strict);
     environment.add_template("page", include_str!("page.html"))?;
     let provenance = &run.manifest().provenance;
+    let config: toml::Table = run.config().parse().unwrap_or_default();
     let note = |(name, note): (&String, &String)| context! { name => name.as_str(), text => note.as_str() };
-    let of = |skill: Option<&str>| -> Vec<Value> {
-        figures.iter().filter(|figure| figure.skill.as_deref() == skill).map(figure_part).collect()
+    let of = |section: &Section| -> Vec<Value> {
+        figures.iter().filter(|figure| figure.section == *section).map(figure_part).collect()
     };
-    let skills = summary.skills.iter().map(|skill| skill_part(skill, of(Some(&skill.name))));
+    let summary = &results.summary;
+    let comparison = Comparison::new(summary);
+    let mut skills: Vec<&Skill> = summary.skills.iter().collect();
+    let first = comparison.as_ref().map(|comparison| comparison.skill.name.as_str());
+    skills.sort_by_key(|skill| first != Some(&skill.name));
+    let skills = skills.into_iter().map(|skill| skill_part(skill, of(&Section::Skill(skill.name.clone()))));
     environment.get_template("page")?.render(context! {
-        title => title(run),
+        title => config.get("title").and_then(toml::Value::as_str).unwrap_or("skilltree report"),
         folder => run.dir().file_name().map(|name| name.to_string_lossy().into_owned()),
         config => run.config(),
         backend => provenance.backend.as_str(),
@@ -48,28 +57,97 @@ fn fill(run: &FinishedRun, summary: &Summary, figures: &[Drawing]) -> Result<Str
         notes => provenance.notes.iter().map(note).collect::<Vec<_>>(),
         seeds => seed_list(&provenance.seeds),
         warnings => warnings(summary),
+        claims => results.claims.iter().map(claim_row).collect::<Vec<_>>(),
+        comparison => comparison.as_ref().map(|comparison| comparison_part(comparison, results, &of)),
+        trials => of(&Section::Trajectories),
+        alterations => alterations_part(summary, &config, of(&Section::Elsewhere)),
         skills => skills.collect::<Vec<_>>(),
-        floor => of(None),
+        floor => of(&Section::World),
         criterion => format!("{:.0}%", 100.0 * CRITERION),
         resamples => number(TABLE_RESAMPLES as f64),
     })
 }
 
+fn claim_row(claim: &Claim) -> Value {
+    let class = match claim.verdict {
+        Verdict::Holds => "holds",
+        Verdict::Partly => "partly",
+        Verdict::DoesNotHold => "fails",
+        Verdict::NotTested => "untested",
+    };
+    context! {
+        number => claim.number,
+        says => claim.says,
+        figures => claim.figures.iter().map(|figure| with_code(figure)).collect::<Vec<_>>(),
+        seeds => claim.seeds,
+        verdict => claim.verdict.words(),
+        class => class,
+        why => with_code(&claim.why),
+    }
+}
+
+/// Text in which names stand between backticks, as HTML.
+fn with_code(text: &str) -> Value {
+    let plain = |part: &str| part.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+    let part =
+        |(i, part): (usize, &str)| if i % 2 == 1 { format!("<code>{}</code>", plain(part)) } else { plain(part) };
+    Value::from_safe_string(text.split('`').enumerate().map(part).collect())
+}
+
+fn comparison_part(comparison: &Comparison<'_>, results: &Results, of: &impl Fn(&Section) -> Vec<Value>) -> Value {
+    let shown = rooms::of(comparison, &results.summary.rooms);
+    let bound = comparison.skill.bound(&comparison.hierarchical[0].arm);
+    context! {
+        skill => comparison.skill.name.as_str(),
+        paper => of(&Section::Paper),
+        all => of(&Section::All),
+        window => super::training::WINDOW,
+        few => figure2::PAPER_SEEDS,
+        averages => figure2::averages(comparison, &results.trainings),
+        budget => of(&Section::Budget),
+        rooms => shown.iter().map(|(_, name)| (*name).to_owned()).collect::<Vec<_>>(),
+        by_room => rooms::table(comparison, &shown),
+        bound => bound.map(|bound| rooms::bound(bound, &shown)),
+        overall => bound.map(|bound| percent(bound.score.success())),
+        room_figures => of(&Section::Rooms),
+    }
+}
+
+fn alterations_part(summary: &Summary, config: &toml::Table, figures: Vec<Value>) -> Value {
+    let series = alterations::series(summary);
+    let (main, others) = series.split_at(series.len().min(1));
+    let meaning = |(name, text): (String, String)| context! { name => name, text => text };
+    context! {
+        main => alterations::table(main),
+        others => alterations::table(others),
+        meanings => alterations::meanings(config).into_iter().map(meaning).collect::<Vec<_>>(),
+        figures => figures,
+    }
+}
+
 fn skill_part(skill: &Skill, figures: Vec<Value>) -> Value {
-    let rows = skill
-        .series
-        .iter()
-        .flat_map(|series| moments(series).into_iter().map(|cell| row(&series.label, cell)).collect::<Vec<_>>());
-    let differences = skill
-        .series
-        .split_first()
-        .map_or_else(Vec::new, |(first, others)| others.iter().flat_map(|other| differences(first, other)).collect());
+    let distinct = skill.distinct();
+    let rows = distinct.par_iter().flat_map_iter(|(series, copies)| {
+        let label = with_copies(series, copies);
+        moments(series).into_iter().map(move |cell| row(&label, cell))
+    });
+    let differences = distinct.split_first().map_or_else(Vec::new, |((first, _), others)| {
+        others.par_iter().flat_map_iter(|(other, _)| differences(first, other)).collect()
+    });
+    let copies = distinct.iter().filter(|(_, copies)| !copies.is_empty());
+    let trained = distinct.iter().filter(|(series, _)| series.last().trials > 0);
+    let bounds = skill.bounds.iter();
     context! {
         name => skill.name.as_str(),
         rows => rows.collect::<Vec<_>>(),
-        planner => skill.planner.as_ref().map(planner),
+        copies => copies.map(|(series, copies)| context! {
+            arm => with_copies(series, copies),
+            others => copies.join(", "),
+        }).collect::<Vec<_>>(),
+        bounds => bounds.map(|bound| planner(bound, skill.never_ends())).collect::<Vec<_>>(),
         differences => differences,
-        criterion => skill.series.iter().map(criterion_row).collect::<Vec<_>>(),
+        ends => !skill.never_ends(),
+        criterion => trained.map(|(series, copies)| criterion_row(series, copies)).collect::<Vec<_>>(),
         figures => figures,
     }
 }
@@ -84,6 +162,7 @@ fn moments(series: &Series) -> Vec<&Cell> {
 fn row(label: &str, cell: &Cell) -> Value {
     let success = cell.values(Score::success);
     let steps = cell.values(Score::steps_per_trial);
+    let returned = cell.values(Score::return_per_trial);
     let total = |of: fn(&Score) -> u64| cell.scores.iter().map(of).sum::<u64>();
     context! {
         arm => label,
@@ -99,11 +178,12 @@ fn row(label: &str, cell: &Cell) -> Value {
         failing => percent(share_below(&success, 0.5)),
         steps => with(mean(&steps), bootstrap(&steps, mean, TABLE_RESAMPLES), 1),
         collisions => format!("{:.4}", mean(&cell.values(Score::collisions_per_step))),
+        returned => with(mean(&returned), bootstrap(&returned, mean, TABLE_RESAMPLES), 2),
     }
 }
 
 /// A row of a skill's table of trials to criterion.
-fn criterion_row(series: &Series) -> Value {
+fn criterion_row(series: &Series, copies: &[&str]) -> Value {
     let mut trials = series.trials_to(CRITERION);
     // Seeds that never got there needed more than all others, so they come last.
     trials.sort_by_key(|trials| trials.unwrap_or(u32::MAX));
@@ -112,7 +192,7 @@ fn criterion_row(series: &Series) -> Value {
         None => format!("more than {}", series.last().trials),
     };
     context! {
-        arm => series.label.as_str(),
+        arm => with_copies(series, copies),
         reached => format!("{} of {}", trials.iter().flatten().count(), trials.len()),
         quarter => at(0.25),
         median => at(0.5),
@@ -120,40 +200,44 @@ fn criterion_row(series: &Series) -> Value {
     }
 }
 
-/// Differences to the first arm, at the moments that both have with the same seeds.
+/// Differences to the first arm on the seeds that both have: at their last tests, and at an early one that both have.
 fn differences(first: &Series, other: &Series) -> Vec<Value> {
-    let pairs = moments(other).into_iter().filter_map(|b| {
-        let a = first.cells.iter().find(|cell| cell.trials == b.trials)?;
-        let seeds = |cell: &Cell| cell.scores.iter().map(|score| score.seed).collect::<Vec<_>>();
-        (seeds(a) == seeds(b)).then_some((a, b))
-    });
+    let early = other.nearest(EARLY_TRIALS);
+    let same = first.cells.iter().find(|cell| cell.trials == early.trials);
+    let early = same.filter(|_| early.trials != other.last().trials).map(|same| (same, early));
     let difference = |(a, b): (&Cell, &Cell)| {
-        let of = |value: fn(&Score) -> f64| paired_difference(&a.values(value), &b.values(value), TABLE_RESAMPLES);
-        let ((success, success_interval), (steps, steps_interval)) = (of(Score::success), of(Score::steps_per_trial));
+        let of = |value: fn(&Score) -> f64| {
+            let (a, b) = paired(&a.scores, &b.scores, value);
+            (paired_difference(&a, &b, TABLE_RESAMPLES), a.len())
+        };
+        let ((success, success_interval), pairs) = of(Score::success);
+        let ((steps, interval), _) = of(Score::steps_per_trial);
         context! {
             arms => format!("{} minus {}", first.label, other.label),
-            trials => b.trials,
-            pairs => b.scores.len(),
-            success => format!(
-                "{:+.1} [{:+.1}, {:+.1}]",
-                100.0 * success,
-                100.0 * success_interval.low,
-                100.0 * success_interval.high
-            ),
-            steps => format!("{steps:+.1} [{:+.1}, {:+.1}]", steps_interval.low, steps_interval.high),
+            trials => if a.trials == b.trials { a.trials.to_string() } else { format!("{}, {}", a.trials, b.trials) },
+            pairs => pairs,
+            success => points_with(success, success_interval),
+            steps => format!("{steps:+.1} [{:+.1}, {:+.1}]", interval.low, interval.high),
         }
     };
-    pairs.map(difference).collect()
+    early.into_iter().chain([(first.last(), other.last())]).map(difference).collect()
 }
 
-fn planner(score: &Score) -> String {
-    format!(
-        "The planner, which knows the floor plan and the pose, achieves {} of {} test trials in {:.1} steps on average: \
-         a bound for every arm.",
-        percent_with(score.success(), wilson(score.successes, score.episodes)),
-        number(score.episodes as f64),
-        score.steps_per_trial(),
-    )
+fn planner(bound: &Bound, never_ends: bool) -> String {
+    let score = &bound.score;
+    let does = match never_ends {
+        true => format!("has a return of {:.2}", score.return_per_trial()),
+        false => format!(
+            "achieves {} of {} test trials in {:.1} steps on average",
+            percent_with(score.success(), wilson(score.successes, score.episodes)),
+            number(score.episodes as f64),
+            score.steps_per_trial(),
+        ),
+    };
+    match &bound.arm {
+        None => format!("The planner, which knows the floor plan and the pose, {does}: a bound for every arm."),
+        Some(arm) => format!("In the task of the arm {arm}, the planner {does}."),
+    }
 }
 
 fn warnings(summary: &Summary) -> Vec<String> {
@@ -169,12 +253,6 @@ fn warnings(summary: &Summary) -> Vec<String> {
         warnings.push("The run holds no tests.".into());
     }
     warnings
-}
-
-fn title(run: &FinishedRun) -> String {
-    let config: Option<toml::Table> = run.config().parse().ok();
-    let title = config.as_ref().and_then(|config| config.get("title")).and_then(toml::Value::as_str);
-    title.map_or_else(|| "skilltree report".into(), str::to_owned)
 }
 
 /// `0 to 31` for an unbroken range, a list otherwise.
@@ -195,20 +273,4 @@ fn figure_part(figure: &Drawing) -> Value {
     // Inline SVG needs no namespace, and the page then names no address at all.
     let svg = figure.svg.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
     context! { name => figure.name.as_str(), svg => svg }
-}
-
-fn percent(share: f64) -> String {
-    format!("{:.1}%", 100.0 * share)
-}
-
-fn percent_range(interval: Interval) -> String {
-    format!("[{:.1}, {:.1}]", 100.0 * interval.low, 100.0 * interval.high)
-}
-
-fn percent_with(share: f64, interval: Interval) -> String {
-    format!("{} {}", percent(share), percent_range(interval))
-}
-
-fn with(value: f64, interval: Interval, digits: usize) -> String {
-    format!("{value:.digits$} [{:.digits$}, {:.digits$}]", interval.low, interval.high)
 }

@@ -2,7 +2,48 @@
 
 use crate::math::rng::philox;
 use rand::{RngExt, TryRng};
+use std::collections::BTreeMap;
 use std::convert::Infallible;
+use std::sync::{Arc, LazyLock, Mutex, PoisonError};
+
+/// Any number would do; it is fixed so that reports can be compared byte by byte.
+const SEED: u32 = 1993;
+/// Draws that are kept for one number of values; 32 MiB.
+const KEPT: usize = 1 << 23;
+
+/// Draws by number of values and of samples.
+type Drawn = BTreeMap<(usize, usize), Arc<Vec<u32>>>;
+
+/// All intervals over as many seeds draw alike, and a report has hundreds of them.
+static DRAWN: LazyLock<Mutex<Drawn>> = LazyLock::new(Mutex::default);
+
+/// Tells, for each of `samples` samples with replacement, how often each of `count` values is in it.
+pub fn resample(count: usize, samples: usize, mut each: impl FnMut(&[u32])) {
+    if count * samples > KEPT {
+        return draw(count, samples, each);
+    }
+    let mut drawn = DRAWN.lock().unwrap_or_else(PoisonError::into_inner);
+    let entry = drawn.entry((count, samples)).or_insert_with(|| {
+        let mut times = Vec::with_capacity(count * samples);
+        draw(count, samples, |sample| times.extend_from_slice(sample));
+        Arc::new(times)
+    });
+    let times = Arc::clone(entry);
+    drop(drawn);
+    times.chunks_exact(count.max(1)).for_each(&mut each);
+}
+
+fn draw(count: usize, samples: usize, mut each: impl FnMut(&[u32])) {
+    let mut draws = Resampler::new(SEED);
+    let mut times = vec![0_u32; count];
+    for _ in 0..samples {
+        times.fill(0);
+        for _ in 0..count {
+            times[draws.index(count)] += 1;
+        }
+        each(&times);
+    }
+}
 
 /// Draws indices uniformly and without bias. Nothing in an experiment depends on it.
 #[derive(Debug, Clone)]

@@ -1,6 +1,6 @@
 //! Means, intervals and rates over seeds. Values are one number per seed; all functions give NaN for no values.
 
-use super::resample::Resampler;
+use super::resample::resample;
 
 /// Resamples behind every interval in a table.
 pub const TABLE_RESAMPLES: usize = 10_000;
@@ -12,8 +12,6 @@ pub const FEW_SEEDS: usize = 10;
 const TAIL: f64 = 0.025;
 /// 97.5 percent point of the normal distribution.
 const Z: f64 = 1.959_963_984_540_054;
-/// Any number would do; it is fixed so that reports can be compared byte by byte.
-const SEED: u32 = 1993;
 
 /// A 95 percent interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,26 +55,41 @@ pub fn quantile(sorted: &[f64], share: f64) -> f64 {
 
 /// Percentile bootstrap interval: seeds are drawn with replacement `resamples` times. Always the same for the same values.
 pub fn bootstrap(values: &[f64], statistic: Statistic, resamples: usize) -> Interval {
-    if values.is_empty() || resamples == 0 {
-        return Interval { low: f64::NAN, high: f64::NAN };
-    }
     let values = sorted(values);
-    let mut draws = Resampler::new(SEED);
-    let mut times = vec![0_u32; values.len()];
     let mut sample = Vec::with_capacity(values.len());
-    let mut outcomes = Vec::with_capacity(resamples);
-    for _ in 0..resamples {
+    resampled(values.len(), resamples, |times| {
         // Counting how often each value is drawn gives the sample in order, without sorting it.
-        times.fill(0);
-        for _ in 0..values.len() {
-            times[draws.index(values.len())] += 1;
-        }
         sample.clear();
-        for (&value, &times) in values.iter().zip(&times) {
+        for (&value, &times) in values.iter().zip(times) {
             sample.extend(std::iter::repeat_n(value, times as usize));
         }
-        outcomes.push(statistic(&sample));
+        statistic(&sample)
+    })
+}
+
+/// Sum of the first numbers over the sum of the second ones.
+pub fn ratio(pairs: &[(f64, f64)]) -> f64 {
+    let sum = |of: fn(&(f64, f64)) -> f64| pairs.iter().map(of).sum::<f64>();
+    sum(|pair| pair.0) / sum(|pair| pair.1)
+}
+
+/// Percentile bootstrap interval of [`ratio`], one pair per seed.
+pub fn bootstrap_ratio(pairs: &[(f64, f64)], resamples: usize) -> Interval {
+    resampled(pairs.len(), resamples, |times| {
+        let weighted =
+            pairs.iter().zip(times).map(|(pair, &times)| (pair.0 * f64::from(times), pair.1 * f64::from(times)));
+        let (over, under) = weighted.fold((0.0, 0.0), |sums, pair| (sums.0 + pair.0, sums.1 + pair.1));
+        over / under
+    })
+}
+
+/// Interval of an outcome over resamples, told how often each of `count` seeds is drawn.
+fn resampled(count: usize, resamples: usize, mut outcome: impl FnMut(&[u32]) -> f64) -> Interval {
+    if count == 0 || resamples == 0 {
+        return Interval { low: f64::NAN, high: f64::NAN };
     }
+    let mut outcomes = Vec::with_capacity(resamples);
+    resample(count, resamples, |times| outcomes.push(outcome(times)));
     outcomes.sort_by(f64::total_cmp);
     Interval { low: quantile(&outcomes, TAIL), high: quantile(&outcomes, 1.0 - TAIL) }
 }

@@ -9,4 +9,5 @@ mod nets;
 #[expect(dead_code, reason = "other tests use the rest of it")]
 mod oracle;
 mod persistence;
+mod planned;
 mod senses;
