@@ -3,6 +3,7 @@
 
 mod backups;
 mod bench;
+mod choices;
 mod mirrors;
 mod nets;
 #[path = "../oracle/mod.rs"]
