@@ -12,3 +12,5 @@ mod oracle;
 mod persistence;
 mod planned;
 mod senses;
+mod stems;
+mod trees;
