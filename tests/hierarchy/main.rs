@@ -1,6 +1,7 @@
 //! Trees of skills, against what is not the product: rules as sets, recursions in f64, geometry by distance fields,
 //! logistic fits by another method, and learners that train alone.
 
+mod after;
 mod backups;
 mod bench;
 mod choices;

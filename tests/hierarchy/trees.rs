@@ -24,6 +24,7 @@ pub(crate) const HOME: &str = r#"
     episodes = 40
     [teacher]
     bank = 32
+    discount = 0.85
     episodes = 20
     [learning]
     replays = 20
