@@ -6,7 +6,7 @@ use skilltree::backend::{Backend, Cohort, Stop};
 use skilltree::config::{Overrides, load, plan::Plan};
 use skilltree::experiment::group::groups;
 use skilltree::learner::build::Shape;
-use skilltree::learner::layout::{Cursor, LANES, MAX_CHILDREN, RECORD_WORDS, Settings};
+use skilltree::learner::layout::{BASE_WORDS, Cursor, LANES, MAX_CHILDREN, RECORD_WORDS, Settings};
 use skilltree::learner::memory::{Learner, Scratch, Shared};
 use skilltree::learner::phase::{PHASE_DONE, PHASE_FAILED};
 use skilltree::lesson::record::{CUT, ENDED};
@@ -15,13 +15,14 @@ use skilltree::math::functions::squash;
 use skilltree::qnet::backward::{CLOCK_SECOND, backward};
 use skilltree::qnet::forward::{forward, net_of};
 use skilltree::robot::floor::Floor;
-use skilltree::skill::choose::{pick, sharpness, weigh};
+use skilltree::skill::choose::{NO_CHILD, pick, sharpness, weigh};
 use skilltree::skill::encode::encode;
 use std::path::Path;
 
 /// A learning rate so small that no Q-value changes, and a power of two, so that what was learned can be read off.
 const HARDLY: f32 = 1.0 / (1_u64 << 60) as f32;
-const NOBODY: u32 = 255;
+/// All six actions.
+const ALL: u32 = 0x3f;
 
 fn configs() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/configs"))
@@ -53,7 +54,7 @@ struct Bench {
 impl Bench {
     fn new(set: &[&str]) -> Self {
         let plan = plan(set);
-        let shape = Shape::new(&plan.world, &[&plan.arms[0]]).expect("the skill fits");
+        let shape = Shape::new(plan.world(), &[&plan.arms[0]]).expect("the skill fits");
         let (settings, cursor, nets) = shape.learner(&plan.arms[0], plan.run_seed, 0);
         let floor = Floor::new(&shape.atlas.plan);
         Self {
@@ -82,12 +83,12 @@ impl Bench {
         let mut words = vec![lesson.steps.len() as u32, lesson.end, 0, 0];
         for step in &lesson.steps {
             let mut record = step.senses;
-            record[8] = step.child | step.masked << 8;
+            record[8] = step.child | step.allowed << 8 | step.allowed << 16 | 1 << 31;
             record[9] = step.reward.to_bits();
             words.extend(record);
         }
         let mut record = lesson.last;
-        record[8] = NOBODY | NOBODY << 8;
+        record[8] = NO_CHILD | ALL << 8 | ALL << 16 | 1 << 31;
         words.extend(record);
         self.lessons[..words.len()].copy_from_slice(&words);
         self.bank_len(words.len());
@@ -103,7 +104,7 @@ impl Bench {
     fn replay(&mut self, taught: u32) -> Vec<f32> {
         let mut scratch = Scratch::default();
         let mut learner = self.learner();
-        begin_replay(&mut learner, 0, taught);
+        begin_replay(&mut learner, 0, taught, 0);
         let mut returns = Vec::new();
         while learner.cursor.replay_left > 0 || learner.cursor.replay_open == 1 {
             let open = learner.cursor.replay_open == 1;
@@ -130,22 +131,23 @@ impl Bench {
 
 #[derive(Debug, Clone, Copy)]
 struct Step {
-    senses: [u32; RECORD_WORDS],
+    senses: [u32; BASE_WORDS],
     child: u32,
-    masked: u32,
+    /// Bits of the children that could be chosen.
+    allowed: u32,
     reward: f32,
 }
 
 #[derive(Debug, Clone)]
 struct Lesson {
     steps: Vec<Step>,
-    last: [u32; RECORD_WORDS],
+    last: [u32; BASE_WORDS],
     end: u32,
 }
 
 /// Senses of a made-up observation.
-fn senses(next: &mut impl FnMut() -> f64) -> [u32; RECORD_WORDS] {
-    let mut record = [0; RECORD_WORDS];
+fn senses(next: &mut impl FnMut() -> f64) -> [u32; BASE_WORDS] {
+    let mut record = [0; BASE_WORDS];
     for ray in 0..24 {
         record[ray / 4] |= ((next() * 128.0) as u32) << (8 * (ray % 4));
     }
@@ -154,8 +156,15 @@ fn senses(next: &mut impl FnMut() -> f64) -> [u32; RECORD_WORDS] {
     record
 }
 
+/// Scratch memory with the record of made-up senses.
+fn scratch_of(senses: &[u32; BASE_WORDS]) -> Scratch {
+    let mut record = [0; RECORD_WORDS];
+    record[..BASE_WORDS].copy_from_slice(senses);
+    Scratch { record, ..Scratch::default() }
+}
+
 /// The inputs that the record's words stand for, from the definition of the coding in the config's documentation.
-fn inputs_of(record: &[u32; RECORD_WORDS]) -> Vec<f64> {
+fn inputs_of(record: &[u32]) -> Vec<f64> {
     let bytes: Vec<u8> = record[..6].iter().flat_map(|word| word.to_le_bytes()).collect();
     let sonar = bytes.iter().map(|d| 2.0 * (-(f64::from(*d) - 12.0) / 60.0).exp() - 1.0);
     let bits = (0..28).map(|bit| f64::from(record[6] >> bit & 1));
@@ -231,8 +240,8 @@ fn q_values_match_plain_f64_nets() {
         let mut next = random(3);
         let mut spread = 0.0_f64;
         for _ in 0..200 {
-            let mut scratch = Scratch { record: senses(&mut next), ..Scratch::default() };
-            encode(&bench.shared, &mut scratch, &bench.shared.skills[0]);
+            let mut scratch = scratch_of(&senses(&mut next));
+            encode(&bench.shared, &mut scratch, &bench.shared.skills[0], false);
             forward(&bench.nets, &mut scratch, &bench.shared.skills[0], 0);
             let x = inputs_of(&scratch.record);
             for (i, (found, exact)) in scratch.inputs.iter().zip(&x).enumerate() {
@@ -263,7 +272,7 @@ fn one_replayed_transition_descends_the_gradient() {
         let mut bench = Bench::new(&set);
         bench.settings[0].rate = 256.0;
         bench.settings[0].beta1 = 0.0;
-        let step = Step { senses: senses(&mut next), child, masked: NOBODY, reward };
+        let step = Step { senses: senses(&mut next), child, allowed: ALL, reward };
         bench.keep(&Lesson { steps: vec![step], last: senses(&mut next), end: ENDED });
         let before = bench.nets.clone();
         let net = Net::of(&bench, child);
@@ -301,8 +310,8 @@ fn momentum_carries_the_last_change_on() {
     bench.settings[0].beta1 = 0.5;
     let mut next = random(5);
     let skill = bench.shared.skills[0];
-    let mut scratch = Scratch { record: senses(&mut next), ..Scratch::default() };
-    encode(&bench.shared, &mut scratch, &skill);
+    let mut scratch = scratch_of(&senses(&mut next));
+    encode(&bench.shared, &mut scratch, &skill, false);
     forward(&bench.nets, &mut scratch, &skill, 0);
     let start = Net::of(&bench, 2);
     backward(&mut bench.nets, &scratch, &skill, &bench.settings[0], 0, 2, 0.5, bench.settings[0].rate);
@@ -342,7 +351,7 @@ fn adam_follows_the_formula(epsilon: &str, rate: &str) {
     let (mut mean, mut square) = (vec![0.0; net.0.len()], vec![0.0; net.0.len()]);
     for time in 1..=3 {
         let reward = [80.0, -50.0, 30.0][time - 1];
-        let step = Step { senses: senses(&mut next), child, masked: NOBODY, reward };
+        let step = Step { senses: senses(&mut next), child, allowed: ALL, reward };
         bench.keep(&Lesson { steps: vec![step], last: step.senses, end: ENDED });
         let returns = bench.replay(1);
         // Kingma and Ba, algorithm 1, with the bias corrections in the rate (end of their section 2).
@@ -419,7 +428,7 @@ fn five_steps(end: u32, last_reward: f32) -> Lesson {
         record[6] = record[6] & 0x00ff_ffff | bumpers << 24;
         record
     };
-    let mut step = |bumpers, child, reward| Step { senses: at(bumpers), child, masked: NOBODY, reward };
+    let mut step = |bumpers, child, reward| Step { senses: at(bumpers), child, allowed: ALL, reward };
     let steps = vec![
         step(NONE, 3, 0.0),
         step(FRONT, 0, -8.0),
@@ -511,7 +520,7 @@ fn steps_that_are_no_policy_cut_the_chain() {
     }
     // A masked child is not what the best value is about: without child 0 the best in front of the wall is 0.
     let mut masked = goal;
-    masked.steps[4].masked = 0;
+    masked.steps[4].allowed = ALL & !1;
     let returns = [111.0 / 1024.0, -0.06640625, 0.046875, 0.1875, 0.75];
     expect(&mut exact(0.5), &masked, 0, returns, all, "masked");
 }
@@ -535,7 +544,7 @@ fn returns_of_random_lessons_match_the_forward_view() {
         let step = |next: &mut dyn FnMut() -> f64| Step {
             senses: senses(&mut || next()),
             child: (next() * 6.0) as u32,
-            masked: NOBODY,
+            allowed: ALL,
             reward: if next() < 0.3 { (next() * 200.0 - 100.0) as f32 } else { 0.0 },
         };
         let taken = (0..count).map(|_| step(&mut next)).collect();
@@ -543,7 +552,8 @@ fn returns_of_random_lessons_match_the_forward_view() {
         let lesson = Lesson { steps: taken, last: senses(&mut next), end };
 
         let nets: Vec<Net> = (0..6).map(|child| Net::of(&bench, child)).collect();
-        let values = |record| nets.iter().map(|net| net.value(&inputs_of(record))).collect::<Vec<f64>>();
+        let values =
+            |record: &[u32; BASE_WORDS]| nets.iter().map(|net| net.value(&inputs_of(record))).collect::<Vec<f64>>();
         let all: Vec<Vec<f64>> = lesson.steps.iter().map(|step| values(&step.senses)).collect();
         let best = |q: &[f64]| q.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let mut peaks: Vec<f64> = all.iter().map(|q| best(q)).collect();
@@ -644,13 +654,16 @@ fn children_are_chosen_as_often_as_the_softmax_says() {
     let mut next = random(10);
     for round in 0..60 {
         let children = 1 + round % 8;
-        let masked = if round % 3 == 0 { (next() * f64::from(children)) as u32 } else { NOBODY };
+        // Any set of children but none; bits beyond the last child mean nothing.
+        let drawn = (next() * 256.0) as u32;
+        let all = (1 << children) - 1;
+        let allowed = if drawn & all == 0 { !0 } else { drawn };
         let sharp = (next() * 30.0) as f32;
         // The children beyond the last would win if they counted.
         let q = std::array::from_fn(|i| if (i as u32) < children { (next() * 1.8 - 0.9) as f32 } else { 0.99 });
         let mut scratch = Scratch { q, ..Scratch::default() };
-        let outlook = weigh(&mut scratch, children, masked, sharp);
-        let open = |child: u32| child < children && (child != masked || children == 1);
+        let outlook = weigh(&mut scratch, children, allowed, sharp);
+        let open = |child: u32| child < children && allowed >> child & 1 == 1;
         let weight = |child: u32| {
             if open(child) { (f64::from(sharp) * f64::from(scratch.q[child as usize])).exp() } else { 0.0 }
         };
@@ -669,16 +682,16 @@ fn children_are_chosen_as_often_as_the_softmax_says() {
         assert_eq!(Some(outlook.greedy), best);
         assert_eq!(outlook.best, scratch.q[outlook.greedy as usize]);
     }
-    // Of equals the first; if that is masked, the next.
+    // Of equals the first; if that is not allowed, the next.
     let mut scratch = Scratch { q: [0.25; MAX_CHILDREN], ..Scratch::default() };
-    assert_eq!(weigh(&mut scratch, 6, NOBODY, 1.0).greedy, 0);
-    assert_eq!(weigh(&mut scratch, 6, 0, 1.0).greedy, 1);
+    assert_eq!(weigh(&mut scratch, 6, ALL, 1.0).greedy, 0);
+    assert_eq!(weigh(&mut scratch, 6, ALL & !1, 1.0).greedy, 1);
     scratch.q[3] = 0.5;
     scratch.q[5] = 0.5;
-    assert_eq!(weigh(&mut scratch, 6, NOBODY, 1.0).greedy, 3);
-    assert_eq!(weigh(&mut scratch, 6, 3, 1.0).greedy, 5);
+    assert_eq!(weigh(&mut scratch, 6, ALL, 1.0).greedy, 3);
+    assert_eq!(weigh(&mut scratch, 6, ALL & !8, 1.0).greedy, 5);
     // The largest random word picks an available child too.
-    let outlook = weigh(&mut scratch, 6, NOBODY, 1.0);
+    let outlook = weigh(&mut scratch, 6, ALL, 1.0);
     assert_eq!(pick(&scratch, outlook, u32::MAX), 5);
 }
 
@@ -692,7 +705,7 @@ fn inverse_temperature_rises_linearly_and_stays() {
 
 // The state machine.
 
-/// A config of two skills whose learners need every phase, and little time.
+/// A config of two skills, one of them above the other, whose learners need every phase, and little time.
 fn small() -> Plan {
     let office = configs().join("worlds/office.toml");
     let text = format!(
@@ -723,7 +736,7 @@ fn small() -> Plan {
         trials = 6
         [skill.wander]
         inputs = ["sonar-far", "compass"]
-        children = ["turn+15", "turn-60", "move+12"]
+        children = ["turn+15", "dock", "move+12"]
         reward = {{ docked = 50, collision = -20 }}
         starts = {{ anywhere = 1.0 }}
         tests = "anywhere"

@@ -3,16 +3,17 @@
 
 use skilltree::backend::Backend;
 use skilltree::backend::cpu::CpuBackend;
-use skilltree::config::plan::{Action, Noise, NoiseKind, Plan, Skill};
+use skilltree::config::plan::{Action, Child, Noise, NoiseKind, Plan, Robot as Habits, Skill};
 use skilltree::config::{Overrides, load};
 use skilltree::experiment::group::{Group, groups};
 use skilltree::experiment::senses::{SILENT, Senses, floor_only, robot_at};
-use skilltree::learner::layout::{LESSON_HEADER, RECORD_WORDS, Robot};
+use skilltree::learner::layout::{BASE_WORDS, LESSON_HEADER, Robot};
 use skilltree::learner::memory::Shared;
 use skilltree::lesson::record::ENDED;
-use skilltree::robot::motion::{COLLISION, DOCKED, PASSED_DOOR, move_body};
+use skilltree::robot::motion::{BESIDE_LEFT, BESIDE_RIGHT, COLLISION, DOCKED, FORWARD, PASSED_DOOR, move_body};
 use skilltree::skill::reward::passed_door;
-use skilltree::teacher::planner::{Planner, origin_of};
+use skilltree::teacher::bank::Demonstration;
+use skilltree::teacher::planner::{Planner, Terms};
 use skilltree::world::{Pose, World, parse};
 use std::collections::VecDeque;
 use std::fmt::Write;
@@ -61,8 +62,14 @@ fn docking() -> (Plan, Skill) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/docking.toml");
     let plan = load(&path, &Overrides::default()).unwrap_or_else(|error| panic!("{error}"));
     let skill = plan.arms[0].skills[0].clone();
-    assert_eq!((skill.reward, skill.ends), ([100.0, -10.0, 0.0], DOCKED));
+    assert_eq!((skill.reward, skill.ends), ([100.0, -10.0, 0.0, 0.0, 0.0], DOCKED));
     (plan, skill)
+}
+
+/// What a planner plans with.
+fn terms(noise: Noise, backward_cost: f32, pitch: f32) -> Terms {
+    let robot = Habits { light_trace: 0.9, door_trace: 0.9, range_mean: 0.9, beside_near: 15.0, beside_far: 30.0 };
+    Terms { noise, robot, discount: DISCOUNT, backward_cost, pitch }
 }
 
 /// Place on the line in moves, and heading in steps of 15 degrees.
@@ -109,13 +116,22 @@ fn distances(
     found
 }
 
+/// The actions that a skill chooses among.
+fn actions(skill: &Skill) -> Vec<Action> {
+    let action = |child: &Child| match child {
+        Child::Action(action) => *action,
+        Child::Skill(_) => panic!("a skill among the children"),
+    };
+    skill.children.iter().map(action).collect()
+}
+
 fn close(found: f32, expected: f64, what: impl Fn() -> String) {
     let error = (f64::from(found) - expected).abs();
     assert!(error <= 1.0e-4 * expected.abs(), "{}: {found} for {expected}", what());
 }
 
 /// Checks a planner against the shortest paths: values on grid poses and between them, and every choice.
-fn check_paths(planner: &Planner, floor: &Shared, skill: &Skill, found: &[(State, u32)], quarters: u32) {
+fn check_paths(planner: &Planner, floor: &Shared, children: &[Action], found: &[(State, u32)], quarters: u32) {
     let worth = |distance: u32| 100.0 * f64::from(DISCOUNT).powi(distance as i32 - 1);
     let distance = |state: State| found.iter().find(|(known, _)| *known == state).map(|(_, distance)| *distance);
     let inches = |place: i32| f64::from(place * MOVE);
@@ -123,8 +139,8 @@ fn check_paths(planner: &Planner, floor: &Shared, skill: &Skill, found: &[(State
         let pose = on_line(inches(place), f64::from(heading) * 15.0, quarters);
         let say = || format!("place {place}, heading {heading}, {steps} steps, turned {quarters} times");
         close(planner.value(0, pose), worth(steps), say);
-        let child = skill.children[planner.choose(&floor.floor, 0, pose)];
-        close(planner.worth(&floor.floor, 0, pose, child), worth(steps), say);
+        let child = children[planner.choose(floor, 0, pose)];
+        close(planner.worth(floor, 0, pose, child), worth(steps), say);
         let after = next((place, heading), child).and_then(distance);
         assert!(steps == 1 || after == Some(steps - 1), "{}: {child:?} leads to {after:?}", say());
         // A third of the way to the next place and a quarter of the way to the next heading.
@@ -147,18 +163,18 @@ fn docking_values_are_those_of_the_shortest_paths() {
         // Contact is 30 in from the end: halfway between two grid points, so no rounding decides a step.
         let world = corridor(18.0, quarters);
         let shared = floor_only(&world);
-        let planner = Planner::new(&world, &shared.floor, &skill, &SILENT, DISCOUNT, 5.0, MOVE as f32);
+        let planner = Planner::new(&world, &shared, &skill, &terms(SILENT, 5.0, MOVE as f32));
         // Places 3 to 18: 36 to 216 in. A forward step west from place 3 docks.
         let docks = |_: State, to: State, action: Action| to.0 == 2 && action == Action::Forward;
-        let found = distances(&skill.children, 3..19, docks);
+        let found = distances(&actions(&skill), 3..19, docks);
         assert_eq!(found.len(), 16 * 24);
         assert_eq!(found.iter().map(|(_, steps)| *steps).max(), Some(16 + 4));
-        check_paths(&planner, &shared, &skill, &found, quarters);
+        check_paths(&planner, &shared, &actions(&skill), &found, quarters);
         // Backing up is worth its cost less than what follows it, and a bump 10 less.
         let ahead = on_line(72.0, 0.0, quarters);
-        let back = planner.worth(&shared.floor, 0, ahead, Action::Backward);
+        let back = planner.worth(&shared, 0, ahead, Action::Backward);
         close(back, 0.9 * 100.0 * 0.9_f64.powi(3 + 3 - 1) - 5.0, || "backward".to_owned());
-        let bump = planner.worth(&shared.floor, 0, on_line(216.0, 0.0, quarters), Action::Forward);
+        let bump = planner.worth(&shared, 0, on_line(216.0, 0.0, quarters), Action::Forward);
         close(bump, 0.9 * 100.0 * 0.9_f64.powi(3 + 16 - 1) - 10.0, || "bump".to_owned());
     }
 }
@@ -166,18 +182,19 @@ fn docking_values_are_those_of_the_shortest_paths() {
 #[test]
 fn door_values_are_those_of_the_shortest_paths() {
     let (_, mut skill) = docking();
-    skill.reward = [0.0, -10.0, 100.0];
+    skill.reward = [0.0, -10.0, 100.0, 0.0, 0.0];
     skill.ends = PASSED_DOOR;
     // Fewer children, in another order, for good measure.
-    skill.children = vec![Action::Backward, Action::TurnLeft60, Action::TurnLeft15, Action::Forward];
+    let children = [Action::Backward, Action::TurnLeft60, Action::TurnLeft15, Action::Forward];
+    skill.children = children.map(Child::Action).to_vec();
     for quarters in 0..4 {
         let world = corridor(18.0, quarters);
         let shared = floor_only(&world);
-        let planner = Planner::new(&world, &shared.floor, &skill, &SILENT, DISCOUNT, 0.0, MOVE as f32);
+        let planner = Planner::new(&world, &shared, &skill, &terms(SILENT, 0.0, MOVE as f32));
         // The far face is at 124 in; a robot beyond 137 in has passed: the first grid point is at 144, place 12.
-        let found = distances(&skill.children, 3..12, |_, to, _| to.0 == 12);
+        let found = distances(&actions(&skill), 3..12, |_, to, _| to.0 == 12);
         assert_eq!(found.len(), 9 * 24);
-        check_paths(&planner, &shared, &skill, &found, quarters);
+        check_paths(&planner, &shared, &actions(&skill), &found, quarters);
     }
 }
 
@@ -186,7 +203,7 @@ fn door_values_are_those_of_the_shortest_paths() {
 #[test]
 fn values_under_noise_are_those_of_the_recursion() {
     let (_, mut skill) = docking();
-    skill.children = vec![Action::Forward];
+    skill.children = vec![Child::Action(Action::Forward)];
     for (kind, actuator, weights) in [
         (NoiseKind::Gaussian, 0.5 / 3.0_f64.sqrt(), [1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0]),
         (NoiseKind::Uniform, 0.5 / 0.6_f64.sqrt(), [5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0]),
@@ -195,7 +212,7 @@ fn values_under_noise_are_those_of_the_recursion() {
         let world = corridor(15.0, 0);
         let shared = floor_only(&world);
         let noise = Noise { kind, actuator: actuator as f32, ..SILENT };
-        let planner = Planner::new(&world, &shared.floor, &skill, &noise, DISCOUNT, 5.0, 6.0);
+        let planner = Planner::new(&world, &shared, &skill, &terms(noise, 5.0, 6.0));
         let mut exact: Vec<f64> = Vec::new();
         for place in 0..30 {
             let x = 30.0 + 6.0 * f64::from(place);
@@ -258,21 +275,28 @@ fn only(plan: &Plan) -> Group {
     groups.remove(0)
 }
 
+/// The planner's own tests of the only skill.
+fn bounds(group: &Group) -> &[Demonstration] {
+    group.bounds[0].as_deref().expect("the first group has the tests")
+}
+
 fn success(group: &Group) -> f64 {
-    let tests = &group.bounds[0];
+    let tests = bounds(group);
     assert_eq!(tests.len(), 1000);
     tests.iter().filter(|test| test.achieved()).count() as f64 / 1000.0
 }
 
-/// A lesson's header against its own records.
+/// A lesson's header against its own records. `pay` is what docking, collisions and doors bring.
 fn check_lesson(lesson: &[u32], ends: u32, pay: [f32; 3]) {
     let steps = lesson[0] as usize;
-    let record = |step: usize| &lesson[LESSON_HEADER + step * RECORD_WORDS..][..RECORD_WORDS];
+    let record = |step: usize| &lesson[LESSON_HEADER + step * BASE_WORDS..][..BASE_WORDS];
+    // Every choice is a free one among all six actions.
+    let open = 0x3f << 8 | 0x3f << 16 | 1 << 31;
     let (mut reward, mut collisions) = (0.0, 0);
     for step in 0..steps {
         let word = record(step)[8];
-        let events = word >> 16;
-        assert!(word & 0xff < 6 && (word >> 8) & 0xff == 255);
+        let events = word >> 24 & 0x7f;
+        assert!(word & 0xff < 6 && word & !(events << 24) & !0xff == open, "{word:x}");
         let earned: f32 = (0..3).filter(|event| events >> event & 1 == 1).map(|event| pay[event]).sum();
         assert_eq!(f32::from_bits(record(step)[9]), earned);
         reward += earned;
@@ -280,8 +304,8 @@ fn check_lesson(lesson: &[u32], ends: u32, pay: [f32; 3]) {
         assert_eq!(events & ends != 0, step + 1 == steps && lesson[1] == ENDED, "step {step} of {steps}");
     }
     assert_eq!((f32::from_bits(lesson[2]), lesson[3]), (reward, collisions));
-    assert_eq!(record(steps)[8] & 0xffff, 0xffff, "no action after the last observation");
-    assert!(lesson[LESSON_HEADER + (steps + 1) * RECORD_WORDS..].iter().all(|word| *word == 0));
+    assert_eq!(record(steps)[8..], [255 | open, 0], "no action after the last observation");
+    assert!(lesson[LESSON_HEADER + (steps + 1) * BASE_WORDS..].iter().all(|word| *word == 0));
 }
 
 fn check_bank(group: &Group, ends: u32, pay: [f32; 3]) {
@@ -301,7 +325,7 @@ fn the_planner_docks_in_the_office_and_leaves_sound_lessons() {
     let group = only(&office_config(DOCK, ""));
     assert!(success(&group) >= 0.99, "{}", success(&group));
     check_bank(&group, DOCKED, [100.0, -10.0, 0.0]);
-    for test in &group.bounds[0] {
+    for test in bounds(&group) {
         check_lesson(&test.lesson, DOCKED, [100.0, -10.0, 0.0]);
     }
     // The same config gives the same lessons, another run seed others.
@@ -317,33 +341,60 @@ fn the_planner_passes_doors_in_the_office_too() {
     check_bank(&group, PASSED_DOOR, [0.0, -10.0, 100.0]);
 }
 
+/// Number of the room that holds a pose.
+fn plan_room(group: &Group, pose: Pose) -> u32 {
+    let plan = &group.shared.floor.plan;
+    let inside = |area: &&skilltree::learner::layout::Area| {
+        area.x0 <= pose.x && pose.x < area.x1 && area.y0 <= pose.y && pose.y < area.y1
+    };
+    let rooms = &plan.room[..plan.rooms as usize];
+    rooms.iter().position(|area| inside(&area)).map_or(255, |room| room as u32)
+}
+
+/// Events that the readings after an action tell of: the nearest one 30 to 150 degrees to a side is 15 to 30 inches.
+fn beside(senses: &Senses, action: u32, events: u32) -> u32 {
+    let near = |rays: std::ops::RangeInclusive<usize>| {
+        let nearest = senses.sonar[rays].iter().min().copied().unwrap_or(0);
+        action == FORWARD && events & (COLLISION | DOCKED) == 0 && (15..=30).contains(&nearest)
+    };
+    (if near(2..=10) { BESIDE_LEFT } else { 0 }) | (if near(14..=22) { BESIDE_RIGHT } else { 0 })
+}
+
 /// Without noise a lesson's actions, carried out again from its start, give its events and readings.
 #[test]
 fn lessons_without_noise_can_be_driven_again() {
     let silent = "[robot.noise]\nactuator = 0.0\nsonar = 0.0\nlight = 0.0\ncompass = 0.0";
     for (skill, ends) in [(DOCK, DOCKED), (DOOR, PASSED_DOOR)] {
         let group = only(&office_config(&format!("{silent}\n{skill}"), ""));
-        let mut hits = 0;
+        let (mut hits, mut walls) = (0, 0);
         let (mut sensed, mut robots) = (Vec::new(), Vec::new());
-        for test in group.bounds[0].iter().take(200) {
+        for test in bounds(&group).iter().take(200) {
             let floor = &group.shared.floor;
+            let sense = |step: usize| {
+                let mut record = [0; BASE_WORDS];
+                record.copy_from_slice(&test.lesson[LESSON_HEADER + step * BASE_WORDS..][..BASE_WORDS]);
+                Senses::of(&Robot { record, ..bytemuck::Zeroable::zeroed() })
+            };
             let mut pose = test.start;
-            let origin = origin_of(floor, pose);
+            let room = |pose: Pose| plan_room(&group, pose);
+            let mut origin = room(pose);
             for step in 0..test.steps() as usize {
-                let record = &test.lesson[LESSON_HEADER + step * RECORD_WORDS..][..RECORD_WORDS];
-                let mut words = [0; RECORD_WORDS];
-                words.copy_from_slice(record);
-                let robot = Robot { record: words, ..bytemuck::Zeroable::zeroed() };
-                sensed.push(Senses::of(&robot));
+                let word = test.lesson[LESSON_HEADER + step * BASE_WORDS + 8];
+                sensed.push(sense(step));
                 robots.push(robot_at(pose, &SILENT, 0, 0));
-                let moved = move_body(floor, pose.x, pose.y, pose.heading, record[8] & 0xff, 1.0);
-                let events = moved.events | passed_door(&floor.plan, origin, moved.x, moved.y);
-                assert_eq!(record[8] >> 16, events, "step {step}");
-                hits += u32::from(events & COLLISION != 0);
+                let action = word & 0xff;
+                let moved = move_body(floor, pose.x, pose.y, pose.heading, action, 1.0);
+                let passed = passed_door(&floor.plan, origin, moved.x, moved.y);
                 pose = Pose { x: moved.x, y: moved.y, heading: moved.heading };
+                origin = if passed == 0 { origin } else { room(pose) };
+                let events = moved.events | passed | beside(&sense(step + 1), action, moved.events);
+                assert_eq!(word >> 24 & 0x7f, events, "step {step}");
+                hits += u32::from(events & COLLISION != 0);
+                walls += u32::from(events & (BESIDE_LEFT | BESIDE_RIGHT) != 0);
                 assert_eq!(events & ends != 0, step + 1 == test.steps() as usize && test.achieved());
             }
         }
+        assert!(walls > 100, "{walls} steps beside walls");
         assert!(hits < 100, "{hits} collisions in 200 lessons");
         CpuBackend::new(2, None).expect("threads").step(&group.shared, &mut robots, 1).expect("the CPU steps");
         for (then, robot) in sensed.iter().zip(&robots) {

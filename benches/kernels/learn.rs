@@ -3,7 +3,7 @@
 //! Weights lie as in most programs, input by input within a hidden unit. The order of every sum is the
 //! twins', so that results can be compared as bytes.
 
-use skilltree::learner::layout::{LANES, LESSON_HEADER, RECORD_WORDS, Settings, SkillPlan};
+use skilltree::learner::layout::{LANES, LESSON_HEADER, Settings, SkillPlan};
 use skilltree::lesson::record::CUT;
 use skilltree::math::functions::{exponential, flush, reciprocal, reciprocal_sqrt, square_root, squash};
 use skilltree::qnet::backward::CLOCK_SECOND;
@@ -82,8 +82,8 @@ impl Nets {
         let (mut next_best, mut next_return) = (0.0, 0.0);
         let open = lesson[1] == CUT && settings.timeout_terminal == 0;
         for step in (0..if open { steps + 1 } else { steps }).rev() {
-            let at = LESSON_HEADER + step * RECORD_WORDS;
-            let record = &lesson[at..at + RECORD_WORDS];
+            let at = LESSON_HEADER + step * skill.record_words as usize;
+            let record = &lesson[at..at + skill.record_words as usize];
             let x = encode(record, skill, atlas);
             let hidden: Vec<Vec<f32>> = self.nets.iter().map(|net| self.hidden(net, &x)).collect();
             let q: Vec<f32> = self.nets.iter().zip(&hidden).map(|(net, hidden)| output(net, hidden)).collect();

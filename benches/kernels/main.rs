@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut backend = CpuBackend::new(1, Some(u32::MAX))?;
     println!("{}, {SAMPLES} samples in turn, medians", backend.describe());
 
-    let shared = floor_only(&plan.world);
+    let shared = floor_only(plan.world());
     let mut lanes = robots(&group.shared, &plan.arms[0].noise);
     let mut scalar = lanes.clone();
     let mut walk = 0;

@@ -36,7 +36,8 @@ fn beside(near: u32, far: u32, action: u32, events: u32) -> u32 {
         left = select(left, reading, reading < left);
         right = select(right, other, other < right);
     }
-    let went = action == FORWARD && (events & COLLISION) == 0u;
+    // The charger stops a move as a wall does: who pushes against it does not follow a wall.
+    let went = action == FORWARD && (events & (COLLISION | DOCKED)) == 0u;
     let on_left = select(0u, BESIDE_LEFT, went && left >= near && left <= far);
     let on_right = select(0u, BESIDE_RIGHT, went && right >= near && right <= far);
     return on_left | on_right;

@@ -1,7 +1,7 @@
 //! What an action earned: events and their amounts.
 
 use crate::learner::layout::{EVENTS, RAYS, RECORD_WORDS, Settings, WorldPlan};
-use crate::robot::motion::{BESIDE_LEFT, BESIDE_RIGHT, COLLISION, FORWARD, PASSED_DOOR};
+use crate::robot::motion::{BESIDE_LEFT, BESIDE_RIGHT, COLLISION, DOCKED, FORWARD, PASSED_DOOR};
 
 /// Stands for no room.
 pub const NOWHERE: u32 = 255;
@@ -36,8 +36,8 @@ pub fn passed_door(world: &WorldPlan, origin: u32, x: f32, y: f32) -> u32 {
     if passed { PASSED_DOOR } else { 0 }
 }
 
-/// [`BESIDE_RIGHT`] and [`BESIDE_LEFT`] where a forward move ended with the nearest reading of that side between
-/// `near` and `far` inches.
+/// [`BESIDE_RIGHT`] and [`BESIDE_LEFT`] where a forward move that was not blocked ended with the nearest reading of
+/// that side between `near` and `far` inches.
 #[inline(always)]
 pub fn beside(record: &[u32; RECORD_WORDS], near: u32, far: u32, action: u32, events: u32) -> u32 {
     let mut left = 255;
@@ -49,7 +49,8 @@ pub fn beside(record: &[u32; RECORD_WORDS], near: u32, far: u32, action: u32, ev
         left = if reading < left { reading } else { left };
         right = if other < right { other } else { right };
     }
-    let went = action == FORWARD && (events & COLLISION) == 0;
+    // The charger stops a move as a wall does: who pushes against it does not follow a wall.
+    let went = action == FORWARD && (events & (COLLISION | DOCKED)) == 0;
     let on_left = if went && left >= near && left <= far { BESIDE_LEFT } else { 0 };
     let on_right = if went && right >= near && right <= far { BESIDE_RIGHT } else { 0 };
     on_left | on_right

@@ -1,0 +1,11 @@
+//! Trees of skills, against what is not the product: rules as sets, recursions in f64, geometry by distance fields,
+//! logistic fits by another method, and learners that train alone.
+
+mod backups;
+mod bench;
+mod mirrors;
+mod nets;
+#[path = "../oracle/mod.rs"]
+#[expect(dead_code, reason = "other tests use the rest of it")]
+mod oracle;
+mod persistence;
