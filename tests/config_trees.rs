@@ -262,8 +262,8 @@ fn worlds_are_read_once_and_named_for_the_run_folder() {
     assert!(plan.worlds[0].text.ends_with(FLAT));
     let loud = Noise { kind: NoiseKind::Uniform, actuator: 0.16, ..arm(&plan, "full").noise };
     let alterations = [
-        Alteration { name: "moved".to_owned(), world: 2, noise: None },
-        Alteration { name: "loud".to_owned(), world: 0, noise: Some(loud) },
+        Alteration { name: "moved".to_owned(), world: Some(2), noise: None },
+        Alteration { name: "loud".to_owned(), world: None, noise: Some(loud) },
     ];
     assert_eq!(plan.alterations, alterations);
     read_again(&plan);
@@ -277,7 +277,7 @@ fn worlds_are_read_once_and_named_for_the_run_folder() {
         "arms=['sides']",
     ]);
     assert_eq!((plan.worlds.len(), plan.arms.len(), plan.arms[0].world), (2, 1, 0));
-    assert_eq!((plan.alterations[0].world, plan.alterations[1].world), (1, 0));
+    assert_eq!((plan.alterations[0].world, plan.alterations[1].world), (Some(1), None));
     let noise = |number: usize| plan.alterations[number].noise.expect("noise");
     assert_eq!((noise(0).sonar, noise(1).sonar, noise(1).actuator), (0.5, 0.25, 0.16));
     read_again(&plan);
