@@ -106,7 +106,7 @@ fn every_default_is_read_and_in_range() {
     for key in keys::ALL {
         let last = key.path.rsplit('.').next().expect("a name");
         let written = plan.resolved.contains(&format!("{last} = ")) || plan.resolved.contains(&format!(".{last}]"));
-        let left_out = ["arms", "root", "extends", "skill.*.tested_at"].contains(&key.path);
+        let left_out = ["arms", "root", "extends", "arm.*.like", "skill.*.tested_at"].contains(&key.path);
         assert_eq!(written, !left_out, "{}", key.path);
         assert!(!key.meaning.is_empty() && !key.allowed.to_string().is_empty());
     }
@@ -430,12 +430,13 @@ fn a_config_may_lie_over_another() {
     let below = below.expect("the file is good");
     assert_eq!((plan.name.as_str(), plan.title.as_str(), plan.seeds.as_slice()), ("over", "", &[3][..]));
     let arms: Vec<&str> = plan.arms.iter().map(|arm| arm.name.as_str()).collect();
-    assert_eq!(arms, ["mine"]);
+    assert_eq!(arms, ["one", "two", "mine"]);
     assert_eq!(plan.evaluate, below.evaluate);
     let mut skill = below.arms[0].skills[0].clone();
-    assert_eq!(plan.arms[0].skills[0].name, skill.name);
-    skill.learning = plan.arms[0].skills[0].learning.clone();
-    assert_eq!((&plan.arms[0].skills[0], skill.learning.gamma), (&skill, 0.25));
+    let gammas: Vec<f32> = plan.arms.iter().map(|arm| arm.skills[0].learning.gamma).collect();
+    assert_eq!(gammas, [0.25, 0.5, 0.25]);
+    skill.learning.gamma = 0.25;
+    assert_eq!(plan.arms[2].skills, [skill]);
     // The resolved text stands alone.
     read_again(&plan);
     let chain = format!("extends = 'world.toml'\n{base}");
@@ -451,5 +452,43 @@ fn a_config_may_lie_over_another() {
         assert!(error.message().contains(message), "{error}");
         let Place::Line { path: at, line: 1, .. } = error.place() else { panic!("{error}") };
         assert_eq!(*at, path);
+    }
+}
+
+#[test]
+fn an_arm_may_be_like_another() {
+    let text = format!(
+        "{FILE}{}",
+        "\
+[arm.three]
+like = 'two'
+skill.dock.max_steps = 50
+[arm.four]
+like = 'three'
+learning.gamma = 0.75
+learning.rate = 0.5
+"
+    );
+    let plan = attempt(&text, WORLD).0.unwrap_or_else(|error| panic!("{error}"));
+    let numbers = |name: &str| {
+        let skill = &plan.arms.iter().find(|arm| arm.name == name).expect("the arm").skills[0];
+        (skill.learning.gamma, rate(&plan, name), skill.max_steps)
+    };
+    let expected = [("one", (0.9, 0.01, 30)), ("two", (0.5, 0.01, 30)), ("three", (0.5, 0.01, 50))];
+    for (name, expected) in expected.into_iter().chain([("four", (0.75, 0.5, 50))]) {
+        assert_eq!(numbers(name), expected, "{name}");
+    }
+    read_again(&plan);
+    for (from, to, line, message) in [
+        ("like = 'two'", "like = 'six'", "like = 'six'", "`six` is not one of the arms"),
+        ("like = 'two'", "like = 'four'", "like = ", "in a circle"),
+        ("like = 'two'", "like = 3", "like = 3", "must be a string"),
+        ("title", "like = 'two'\ntitle", "like = 'two'", "unknown key `like`"),
+    ] {
+        let error = attempt(&text.replacen(from, to, 1), WORLD).0.err().unwrap_or_else(|| panic!("accepted {to}"));
+        println!("{error}\n");
+        assert!(error.message().contains(message), "{to}\n{error}");
+        let Place::Line { text, .. } = error.place() else { panic!("{to}\n{error}") };
+        assert!(text.contains(line), "{to}\n{error}");
     }
 }

@@ -49,7 +49,7 @@ impl Arms<'_> {
     /// Reads all arms, so that a mistake in one that is not run is found too.
     pub(super) fn read(&self, root: &Table<'_>, worlds: &mut Worlds<'_>) -> Result<Vec<Arm>, ConfigError> {
         // Read below, merged with each arm.
-        for key in ARM_KEYS {
+        for key in ARM_KEYS.into_iter().filter(|key| *key != LIKE) {
             root.optional(key);
         }
         if let Some(named) = root.optional(keys::ROOT.name()) {

@@ -1,9 +1,11 @@
 //! What these tests share: small configs, one learner's memory without a backend, and nets in f64.
 
-use skilltree::config::plan::Plan;
+use skilltree::config::plan::{Child, Input, Plan, Skill, Threshold};
 use skilltree::config::{Overrides, load};
 use skilltree::learner::build::Shape;
-use skilltree::learner::layout::{BASE_WORDS, Cursor, LANES, RECORD_WORDS, Settings, SkillPlan};
+use skilltree::learner::layout::{
+    BASE_WORDS, Cursor, LANES, MEMORY_WORD, RECORD_WORDS, Settings, SkillPlan, VALUE_WORD,
+};
 use skilltree::learner::memory::{Learner, Scratch, Shared};
 use skilltree::qnet::forward::net_of;
 use skilltree::robot::floor::Floor;
@@ -160,4 +162,96 @@ impl Nets64 {
 /// Greatest of some values.
 pub(crate) fn most(values: impl IntoIterator<Item = f64>) -> f64 {
     values.into_iter().fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// What a skill's nets are given for a record, from what the config's documentation says of its inputs.
+pub(crate) fn inputs64(skill: &Skill, rooms: usize, record: &[u32]) -> Vec<f64> {
+    let sonar = readings(record);
+    let float = |word: usize| f64::from(f32::from_bits(record[word]));
+    let bit = |word: u32, at: usize| f64::from(word >> at & 1);
+    let near = |reading: f64, scale: f32| 2.0 * (-(reading - 12.0) / f64::from(scale)).exp() - 1.0;
+    let known: Vec<usize> = (0..skill.children.len()).filter(|child| skill.applicable[*child].is_some()).collect();
+    let group = |input: &Input| -> Vec<f64> {
+        match input {
+            Input::Sonar { scale } => sonar.map(|reading| near(reading, *scale)).to_vec(),
+            Input::SonarFar => sonar.map(|reading| 2.0 * reading / 127.0 - 1.0).to_vec(),
+            Input::SonarCompass { scale } => {
+                let compass = float(7);
+                let share = |bearing: usize, ray: usize| {
+                    let off = (15.0 * (bearing as f64 - ray as f64) - compass + 900.0).rem_euclid(360.0) - 180.0;
+                    (1.0 - off.abs() / 15.0).max(0.0)
+                };
+                let value = |bearing| (0..24).map(|ray| share(bearing, ray) * near(sonar[ray], *scale)).sum();
+                (0..24).map(value).collect()
+            }
+            Input::Light => (0..24).map(|ray| bit(record[6], ray)).collect(),
+            Input::Bumpers => (0..4).map(|side| bit(record[6], 24 + side)).collect(),
+            Input::Compass => vec![float(7).to_radians().cos(), float(7).to_radians().sin()],
+            Input::Compass2 => vec![(2.0 * float(7)).to_radians().cos(), (2.0 * float(7)).to_radians().sin()],
+            Input::Lit => vec![f64::from(u8::from(record[6] & 0xff_ffff != 0))],
+            Input::Values => known.iter().map(|child| float(VALUE_WORD + child)).collect(),
+            Input::Applicable => known.iter().map(|child| bit(record[BASE_WORDS], 8 + child)).collect(),
+            Input::Running => {
+                let running = (record[BASE_WORDS] & 0xff) as usize;
+                (0..skill.children.len()).map(|child| f64::from(u8::from(child == running))).collect()
+            }
+            Input::LightTrace => vec![float(MEMORY_WORD + 2)],
+            Input::DoorTrace => (3..6).map(|word| float(MEMORY_WORD + word)).collect(),
+            Input::RangeMeans => (0..2).map(|word| float(MEMORY_WORD + word)).collect(),
+            Input::Room => {
+                let room = (record[BASE_WORDS] >> 16 & 0xff) as usize;
+                (0..rooms).map(|own| f64::from(u8::from(own == room))).collect()
+            }
+        }
+    };
+    skill.inputs.iter().flat_map(group).collect()
+}
+
+/// The record of what the mirror image of a robot would sense.
+pub(crate) fn reflected(record: &[u32]) -> [u32; BASE_WORDS] {
+    let mut out = [0; BASE_WORDS];
+    let byte = |ray: usize| record[ray / 4] >> (8 * (ray % 4)) & 0xff;
+    for ray in 0..24 {
+        // Straight ahead and straight back stay; the others change sides.
+        let other = if ray == 0 { 0 } else { 24 - ray };
+        out[ray / 4] |= byte(other) << (8 * (ray % 4));
+        out[6] |= (record[6] >> other & 1) << ray;
+    }
+    for (side, other) in [(0, 0), (1, 3), (2, 2), (3, 1)] {
+        out[6] |= (record[6] >> (24 + other) & 1) << (24 + side);
+    }
+    out[7..].copy_from_slice(&record[7..BASE_WORDS]);
+    out
+}
+
+/// The skills of one learner, in f64.
+pub(crate) struct Tree64<'a> {
+    skills: &'a [Skill],
+    nets: Vec<Nets64>,
+    rooms: usize,
+}
+
+impl<'a> Tree64<'a> {
+    pub(crate) fn new(skills: &'a [Skill], rooms: usize, plans: &[SkillPlan], nets: &[f32]) -> Self {
+        Self { skills, nets: plans.iter().map(|plan| Nets64::of(nets, plan)).collect(), rooms }
+    }
+
+    /// Q-values of a skill for a record.
+    pub(crate) fn values(&self, skill: usize, record: &[u32]) -> Vec<f64> {
+        let own = &self.skills[skill];
+        let mut seen = record.to_vec();
+        if own.mirror.is_some() {
+            seen[..BASE_WORDS].copy_from_slice(&reflected(record));
+        }
+        self.nets[skill].values(&inputs64(own, self.rooms, &seen))
+    }
+
+    /// What a skill's children are worth, 0 for those without a threshold.
+    pub(crate) fn worths(&self, skill: usize, record: &[u32]) -> Vec<f64> {
+        let worth = |(child, threshold): (&Child, &Option<Threshold>)| match (child, threshold) {
+            (Child::Skill(below), Some(_)) => most(self.values(*below, record)),
+            _ => 0.0,
+        };
+        self.skills[skill].children.iter().zip(&self.skills[skill].applicable).map(worth).collect()
+    }
 }

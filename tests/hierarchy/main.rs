@@ -3,9 +3,12 @@
 
 mod backups;
 mod bench;
+mod choices;
 mod mirrors;
 mod nets;
 #[path = "../oracle/mod.rs"]
 #[expect(dead_code, reason = "other tests use the rest of it")]
 mod oracle;
 mod persistence;
+mod planned;
+mod senses;

@@ -1,11 +1,11 @@
 //! Left and right exchanged: lessons seen in a mirror, and skills that are the mirror image of another one.
 
-use super::bench::{Bench, TREE, made_up, random};
+use super::bench::{Bench, TREE, made_up, random, reflected};
 use super::oracle::{Written, stream};
 use bytemuck::Zeroable;
 use skilltree::config::plan::Event;
 use skilltree::learner::build::Shape;
-use skilltree::learner::layout::{Agent, BASE_WORDS, RAYS};
+use skilltree::learner::layout::Agent;
 use skilltree::learner::memory::{Scratch, Shared};
 use skilltree::lesson::record::{CUT, ENDED};
 use skilltree::lesson::replay::{begin_replay, replay_step};
@@ -23,23 +23,6 @@ const SET: [&str; 5] = [
     "skill.dock.learning.mirror_replays=true",
     "skill.top.applicable={}",
 ];
-
-/// The record of what the mirror image of a robot would sense.
-fn reflected(record: &[u32]) -> [u32; BASE_WORDS] {
-    let mut out = [0; BASE_WORDS];
-    let byte = |ray: usize| record[ray / 4] >> (8 * (ray % 4)) & 0xff;
-    for ray in 0..RAYS {
-        // Straight ahead and straight back stay; the others change sides.
-        let other = if ray == 0 { 0 } else { RAYS - ray };
-        out[ray / 4] |= byte(other) << (8 * (ray % 4));
-        out[6] |= (record[6] >> other & 1) << ray;
-    }
-    for (side, other) in [(0, 0), (1, 3), (2, 2), (3, 1)] {
-        out[6] |= (record[6] >> (24 + other) & 1) << (24 + side);
-    }
-    out[7..].copy_from_slice(&record[7..BASE_WORDS]);
-    out
-}
 
 /// What one replay leaves of the nets.
 fn replayed(bench: &Bench, lesson: &[u32], mirrored: u32, mirror_replays: u32) -> (Vec<u32>, u32) {
