@@ -277,11 +277,7 @@ fn worlds_are_read_once_and_named_for_the_run_folder() {
         "arms=['sides']",
     ]);
     assert_eq!((plan.worlds.len(), plan.arms.len(), plan.arms[0].world), (2, 1, 0));
-<<<<<<< HEAD
-    assert_eq!((plan.alterations[0].world, plan.alterations[1].world), (Some(1), None));
-=======
     assert_eq!((plan.alterations[0].world, plan.alterations[1].world), (Some(1), Some(0)));
->>>>>>> helper-tests
     let noise = |number: usize| plan.alterations[number].noise.expect("noise");
     assert_eq!((noise(0).sonar, noise(1).sonar, noise(1).actuator), (0.5, 0.25, 0.16));
     read_again(&plan);
