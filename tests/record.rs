@@ -4,7 +4,7 @@ use skilltree::record::places::{read_places, write_places};
 use skilltree::record::tables::{read_evaluations, read_trials, write_evaluations, write_trials};
 use skilltree::record::weights::{read_weights, write_weights};
 use skilltree::record::{
-    EvaluationRow, FinishedRun, Manifest, Names, NetWeights, PlaceReading, Provenance, RecordError, RunFolder,
+    EvaluationRow, FORMAT, FinishedRun, Manifest, Names, NetWeights, PlaceReading, Provenance, RecordError, RunFolder,
     SkillWeights, State, TrialRow,
 };
 use std::collections::BTreeMap;
@@ -14,8 +14,12 @@ use tempfile::TempDir;
 
 fn names() -> Names {
     let words = |list: &[&str]| list.iter().map(|word| word.to_string()).collect();
-    let (arms, skills) = (words(&["flat", "tree"]), words(&["dock", "räume"]));
-    Names { arms, skills, variants: words(&["trained", "dark"]), rooms: words(&["A", "B"]) }
+    Names {
+        arms: words(&["flat", "tree"]),
+        skills: words(&["dock", "räume"]),
+        variants: words(&["trained", "moved"]),
+        rooms: words(&["A", "B"]),
+    }
 }
 
 fn trials(count: u32) -> Vec<TrialRow> {
@@ -43,7 +47,7 @@ fn evaluations(count: u32) -> Vec<EvaluationRow> {
         skill: i * 4 / count % 2,
         trials: i,
         actions: 3_000_000_000 + i,
-        variant: i * 2 / count,
+        variant: i.div_ceil(2) % 2,
         room: i % 2,
         episodes: 100,
         successes: i % 101,
@@ -74,7 +78,7 @@ fn tables_come_back_and_their_bytes_are_fixed() {
         let bytes = write_evaluations(&evaluations(count), &names()).unwrap();
         let (read, rows) = read_evaluations(&saved(&dir, &bytes)).unwrap();
         assert_eq!(rows, evaluations(count));
-        assert_eq!((read.variants, read.rooms), (names().variants, names().rooms));
+        assert_eq!((read.rooms, read.variants), (names().rooms, names().variants));
     }
     let empty = write_trials(&[], &names()).unwrap();
     assert_eq!(read_trials(&saved(&dir, &empty)).unwrap().1, vec![]);
@@ -365,7 +369,9 @@ fn a_finished_run_vouches_for_every_byte() {
         assert!(FinishedRun::read(&dir).is_err(), "cut to {length}");
     }
     let text = String::from_utf8(whole).unwrap();
-    fs::write(&path, text.replace("\"format\": 2", "\"format\": 3")).unwrap();
+    let format = |version: u32| format!("\"format\": {version}");
+    assert!(text.contains(&format(FORMAT)));
+    fs::write(&path, text.replace(&format(FORMAT), &format(FORMAT + 1))).unwrap();
     assert!(matches!(FinishedRun::read(&dir), Err(RecordError::Format { .. })));
     fs::write(&path, text.replace("skills/", "../skills/")).unwrap();
     assert!(FinishedRun::read(&dir).unwrap_err().to_string().contains("outside"));

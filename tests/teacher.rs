@@ -69,7 +69,7 @@ fn docking() -> (Plan, Skill) {
 /// What a planner plans with.
 fn terms(noise: Noise, backward_cost: f32, pitch: f32) -> Terms {
     let robot = Habits { light_trace: 0.9, door_trace: 0.9, range_mean: 0.9, beside_near: 15.0, beside_far: 30.0 };
-    Terms { noise, robot, discount: DISCOUNT, backward_cost, pitch }
+    Terms { noise, robot, discount: DISCOUNT, backward_cost, collision_cost: 0.0, pitch }
 }
 
 /// Place on the line in moves, and heading in steps of 15 degrees.

@@ -158,6 +158,7 @@ keys! {
     TEACHER_BANK = "teacher.bank", Some("256"), Whole(1, MANY), Ours, "lessons in the bank of each skill; learners draw theirs from it";
     TEACHER_DISCOUNT = "teacher.discount", Some("0.95"), Number(Bounds::inside(0.0, 1.0)), Ours, "discount factor of the planner, its own, so that arms that differ in theirs share a teacher";
     TEACHER_BACKWARD_COST = "teacher.backward_cost", Some("5.0"), Number(Bounds::between(0.0, 1000.0)), Ours, "what the demonstrator puts on backing up, in units of reward, so that it drives as a person would";
+    TEACHER_COLLISION_COST = "teacher.collision_cost", Some("2.0"), Number(Bounds::between(0.0, 1000.0)), Ours, "what the planner puts on collisions besides the skill's own reward, in units of reward";
     TEACHER_EPISODES = "teacher.episodes", Some("1000"), Whole(1, MANY), Ours, "test trials of the planner itself";
 
     NOISE_KIND = "robot.noise.kind", Some("'gaussian'"), Choice(&["gaussian", "uniform"]), Ours, "amounts are standard deviations, or half-widths";

@@ -140,6 +140,7 @@ fn teacher(root: &Table<'_>) -> Result<Teacher, ConfigError> {
         bank: section.whole(&keys::TEACHER_BANK)?,
         discount: section.number(&keys::TEACHER_DISCOUNT)?,
         backward_cost: section.number(&keys::TEACHER_BACKWARD_COST)?,
+        collision_cost: section.number(&keys::TEACHER_COLLISION_COST)?,
         episodes: section.whole(&keys::TEACHER_EPISODES)?,
     };
     section.0.finish()?;

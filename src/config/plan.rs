@@ -501,6 +501,9 @@ pub struct Teacher {
     pub discount: f32,
     /// Cost, in reward units, that the demonstrator puts on backing up, so that it drives as a person would.
     pub backward_cost: f32,
+    /// Cost, in reward units, that it puts on collisions besides what the skill itself pays for them: where nothing is
+    /// paid, the planner would else push against walls between which it cannot tell.
+    pub collision_cost: f32,
     /// Test trials of the planner itself, which give the bound that reports show.
     pub episodes: u32,
 }

@@ -220,6 +220,7 @@ fn task_of(plan: &Plan, arm: &Arm, skill: &Skill) -> Task {
         robot: arm.robot,
         discount: plan.teacher.discount,
         backward_cost: plan.teacher.backward_cost,
+        collision_cost: plan.teacher.collision_cost,
         pitch: PITCH,
     };
     let all = || Action::ALL.map(Child::Action).to_vec();

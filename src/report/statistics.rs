@@ -53,7 +53,8 @@ pub fn quantile(sorted: &[f64], share: f64) -> f64 {
     sorted[below] + (sorted[above] - sorted[below]) * (position - below as f64)
 }
 
-/// Percentile bootstrap interval: seeds are drawn with replacement `resamples` times. Always the same for the same values.
+/// Percentile bootstrap interval: seeds are drawn with replacement `resamples` times. The same values
+/// always give the same interval.
 pub fn bootstrap(values: &[f64], statistic: Statistic, resamples: usize) -> Interval {
     let values = sorted(values);
     let mut sample = Vec::with_capacity(values.len());

@@ -7,7 +7,7 @@ use crate::config::plan::{Action, Child, Event, Noise, NoiseKind, Robot, Skill};
 use crate::learner::layout::{RAYS, RECORD_WORDS};
 use crate::learner::memory::Shared;
 use crate::math::functions::sin_cos;
-use crate::robot::motion::{BESIDE_LEFT, BESIDE_RIGHT, PASSED_DOOR, move_body};
+use crate::robot::motion::{BESIDE_LEFT, BESIDE_RIGHT, COLLISION, PASSED_DOOR, move_body};
 use crate::robot::sonar::{ranges, rays, reading};
 use crate::skill::reward::{NOWHERE, beside, passed_door, room_of};
 use crate::world::{Pose, World};
@@ -43,6 +43,7 @@ pub struct Planner {
     beside: Option<(u32, u32)>,
     discount: f32,
     backward_cost: f32,
+    collision_cost: f32,
     slips: [(f32, f32); 3],
 }
 
@@ -57,6 +58,8 @@ pub struct Terms {
     pub discount: f32,
     /// Cost of backing up, in reward units: keeps it from backing up where turning serves as well.
     pub backward_cost: f32,
+    /// Cost of collisions besides the skill's own, in reward units.
+    pub collision_cost: f32,
     /// Distance of grid points, inches.
     pub pitch: f32,
 }
@@ -72,7 +75,7 @@ struct Outcome {
 impl Planner {
     /// Plans a skill. For one over skills it plans over all actions: the bound of every tree below it.
     pub fn new(world: &World, shared: &Shared, skill: &Skill, terms: &Terms) -> Self {
-        let Terms { noise, robot, discount, backward_cost, pitch } = *terms;
+        let Terms { noise, robot, discount, backward_cost, collision_cost, pitch } = *terms;
         let columns = (world.size.x / pitch) as usize + 1;
         let rows = (world.size.y / pitch) as usize + 1;
         let free = (0..columns * rows)
@@ -95,6 +98,7 @@ impl Planner {
             beside: pays_beside(skill).then_some((robot.beside_near as u32, robot.beside_far as u32)),
             discount,
             backward_cost,
+            collision_cost,
             slips: slips(&noise),
         };
         planner.values = (0..origins).map(|origin| planner.solve(shared, origin as u32)).collect();
@@ -188,7 +192,8 @@ impl Planner {
             let record = look(shared, moved.x, moved.y, moved.heading);
             events |= beside(&record, near, far, action as u32, events);
         }
-        let reward = (0..Event::ALL.len()).filter(|i| (events >> i) & 1 == 1).map(|i| self.reward[i]).sum();
+        let paid: f32 = (0..Event::ALL.len()).filter(|i| (events >> i) & 1 == 1).map(|i| self.reward[i]).sum();
+        let reward = if events & COLLISION == 0 { paid } else { paid - self.collision_cost };
         let pose = Pose { x: moved.x, y: moved.y, heading: moved.heading };
         Outcome { pose, reward, ended: events & self.ends != 0 }
     }

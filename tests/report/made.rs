@@ -65,13 +65,21 @@ impl Made {
         }
     }
 
-    /// A training trial.
-    #[rustfmt::skip]
-    pub(crate) fn trial(&mut self, arm: &str, skill: &str, seed: u32, trial: u32, (steps, reward, collisions): (u32, f32, u32)) {
-        let (arm, skill) = (code(&mut self.names.arms, arm), code(&mut self.names.skills, skill));
-        let (point, actions, success, taught) = (0, 0, reward > 0.0, false);
+    /// A training trial: steps, reward and collisions.
+    pub(crate) fn trial(&mut self, arm: &str, skill: &str, seed: u32, trial: u32, outcome: (u32, f32, u32)) {
+        let (steps, reward, collisions) = outcome;
         self.trials.push(TrialRow {
-            arm, point, seed, skill, trial, actions, steps, reward, success, collisions, taught,
+            arm: code(&mut self.names.arms, arm),
+            point: 0,
+            seed,
+            skill: code(&mut self.names.skills, skill),
+            trial,
+            actions: 0,
+            steps,
+            reward,
+            success: reward > 0.0,
+            collisions,
+            taught: false,
         });
     }
 

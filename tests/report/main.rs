@@ -120,8 +120,8 @@ const ARMS: [&str; 5] = ["hierarchical", "monolithic", "no-persistence", "no-tea
 const SKILLS: [&str; 2] = ["dock", "recharge"];
 const MOMENTS: [u32; 13] = [0, 10, 25, 50, 75, 100, 125, 150, 175, 200, 225, 250, 300];
 
-/// Five arms that learn at different speeds, tested 13 times from three rooms, all but `monolithic` in docking first; the
-/// planner last.
+/// Five arms that learn at different speeds, tested 13 times from three rooms, all but `monolithic` in docking first;
+/// the planner last.
 fn synthetic(seeds: u32) -> (Names, Vec<EvaluationRow>) {
     let words = |list: &[&str]| list.iter().map(|word| word.to_string()).collect::<Vec<_>>();
     let (variants, rooms) = (words(&["trained"]), words(&["A", "B", "C"]));
@@ -162,7 +162,8 @@ fn synthetic(seeds: u32) -> (Names, Vec<EvaluationRow>) {
         let (variant, returned) = (0, 40_000.0);
         #[rustfmt::skip]
         rows.push(EvaluationRow {
-            arm, point, seed, skill, trials, actions, variant, room, episodes, successes, steps, reward, returned, collisions,
+            arm, point, seed, skill, trials, actions, variant, room,
+            episodes, successes, steps, reward, returned, collisions,
         });
     }
     (names, rows)

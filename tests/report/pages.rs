@@ -59,7 +59,11 @@ fn everything(dir: &Path) {
         made.variant(("hierarchical", "recharge", variant), seed, (60, 6_000, &rooms(18)));
         made.variant(("monolithic", "recharge", variant), seed, (60, 9_000, &rooms(4)));
     }
-    let config = "title = \"A <tree>\"\n[alter.easy]\nworld = \"worlds/easy.toml\"\n[alter.noise-double]\nnoise = { sonar = 0.2 }\n";
+    let config = concat!(
+        "title = \"A <tree>\"\n",
+        "[alter.easy]\nworld = \"worlds/easy.toml\"\n",
+        "[alter.noise-double]\nnoise = { sonar = 0.2 }\n"
+    );
     let flat = Trajectory { arm: "monolithic".into(), achieved: false, world: "worlds/easy.toml".into(), ..example() };
     let third = Trajectory { arm: "no-persistence".into(), ..example() };
     let easy = include_str!("../../configs/worlds/office-easy.toml");

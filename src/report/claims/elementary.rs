@@ -26,8 +26,8 @@ pub(super) const UNTAUGHT: Rule = Rule {
     says: "Without lessons, some robots never learn to dock within 300 trials, and the others need most of them.",
     rule: || {
         format!(
-            "Holds if {} to {} of the seeds achieve less than {} of their tests after {UNTAUGHT_TRIALS} trials, and the \
-             median of the other seeds needs at least {TAUGHT_TRIALS} trials to {}; partly if only one of the two.",
+            "Holds if {} to {} of the seeds achieve less than {} of their tests after {UNTAUGHT_TRIALS} trials, and \
+             the median of the other seeds needs at least {TAUGHT_TRIALS} trials to {}; partly if only one of the two.",
             limit(FAILING.0),
             limit(FAILING.1),
             limit(FAILED),

@@ -88,8 +88,8 @@ pub(super) const PERSISTENCE: Rule = Rule {
     says: "Without the Persistence Rule, performance is poor.",
     rule: || {
         format!(
-            "Last tests, same seeds: holds if `no-persistence` achieves at least {} less than `{MAIN}` and the interval \
-             lies above 0, partly if it only lies above 0.",
+            "Last tests, same seeds: holds if `no-persistence` achieves at least {} less than `{MAIN}` and the \
+             interval lies above 0, partly if it only lies above 0.",
             limit(POOR)
         )
     },
@@ -140,8 +140,8 @@ pub(super) const TD_LAMBDA: Rule = Rule {
     says: "TD(lambda > 0) is more effective than TD(0).",
     rule: || {
         format!(
-            "Last tests, same seeds: holds if `td0` achieves less than `{MAIN}` with an interval above 0, partly if only \
-             the mean is."
+            "Last tests, same seeds: holds if `td0` achieves less than `{MAIN}` with an interval above 0, partly if \
+             only the mean is."
         )
     },
     judge: |evidence| {

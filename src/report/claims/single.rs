@@ -47,8 +47,8 @@ pub(super) const COLLIDES: Rule = Rule {
     says: "It collides on more than 5% of its steps.",
     rule: || {
         format!(
-            "Collisions over steps of all training trials of `{SINGLE}`: holds if the interval lies above {}, partly if \
-             only the mean does.",
+            "Collisions over steps of all training trials of `{SINGLE}`: holds if the interval lies above {}, partly \
+             if only the mean does.",
             limit(OFTEN)
         )
     },

@@ -47,8 +47,8 @@ pub(super) const ALTERED: Rule = Rule {
     says: "What was learned adapts to small unexpected changes of the world without further training.",
     rule: || {
         format!(
-            "Loss of success of `{MAIN}`, averaged over all alterations but `noise-*` and `*-hard`, same seeds: holds up \
-             to {}, partly up to {}.",
+            "Loss of success of `{MAIN}`, averaged over all alterations but `noise-*` and `*-hard`, same seeds: holds \
+             up to {}, partly up to {}.",
             limit(SMALL),
             limit(MODERATE)
         )
