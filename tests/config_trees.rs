@@ -471,12 +471,15 @@ fn what_does_not_go_together_is_shown_in_the_file() {
     }
 }
 
+/// What is replaced in a text, and by what.
+type Edits<'a> = &'a [(&'a str, &'a str)];
+
 /// What would be silently without effect, or wrong, is refused.
 #[test]
 fn thresholds_that_nothing_teaches_and_mirrors_that_show_something_else_are_refused() {
     let learned = "'learned'";
     // What is replaced, by what, words of the line that is shown, of the message and of the hint.
-    let cases: [(&[(&str, &str)], &str, &str, &str); 6] = [
+    let cases: [(Edits<'_>, &str, &str, &str); 6] = [
         (&[("ends = ['beside-right', 'passed-door']", "ends = []")], learned, "`right` has no goal", "a number"),
         (&[("trials = 66", "trials = 0")], learned, "`right` has no trials", "a number"),
         (&[("trials = 66", "planned = true")], learned, "`right` is planned", "a number"),
