@@ -5,6 +5,7 @@ mod plans;
 use plans::{attempt_files, read_again, with};
 use skilltree::config::plan::{Action, Arm, Child, Event, Input, NoiseKind, Optimiser, Plan};
 use skilltree::config::{ConfigError, Overrides, Place, keys, load, parse_seeds};
+use skilltree::learner::build::Shape;
 use std::path::{Path, PathBuf};
 
 fn shipped(name: &str) -> PathBuf {
@@ -495,4 +496,23 @@ learning.rate = 0.5
         let Place::Line { text, .. } = error.place() else { panic!("{to}\n{error}") };
         assert!(text.contains(line), "{to}\n{error}");
     }
+}
+
+#[test]
+fn every_shipped_config_can_be_laid_out() {
+    let mut arms = 0;
+    for entry in std::fs::read_dir(shipped("")).expect("the configs") {
+        let path = entry.expect("a file").path();
+        if path.extension().is_none_or(|extension| extension != "toml") {
+            continue;
+        }
+        let plan = load(&path, &Overrides::default()).unwrap_or_else(|error| panic!("{error}"));
+        // Laying out takes a while: all arms of the main experiment, and one of each of the others.
+        let count = if path.ends_with("lin1993.toml") { plan.arms.len() } else { 1 };
+        for arm in &plan.arms[..count] {
+            Shape::new(plan.world_of(arm), &[arm]).unwrap_or_else(|error| panic!("{}: {error}", arm.name));
+        }
+        arms += plan.arms.len();
+    }
+    assert!(arms > 25, "{arms}");
 }

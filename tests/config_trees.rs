@@ -178,7 +178,7 @@ fn a_mirror_image_takes_everything_from_its_skill() {
     assert_eq!((alone.trials, alone.mirror, &alone.inputs), (9, None, &vec![Input::Compass]));
     assert_eq!(names(arm(&plan, "sides")), ["left", "explore"]);
     // A skill without nets has no image of them.
-    let plan = relatives(&["skill.right.planned=true"]);
+    let plan = relatives(&["skill.right.planned=true", "arm.easy.skill.recharge.applicable={ right = 0.5 }"]);
     for name in ["left", "right"] {
         let planned = skill(&plan, "full", name);
         assert_eq!((planned.planned, planned.mirror, planned.trials, planned.lessons), (true, None, 0, 0));
@@ -227,6 +227,7 @@ fn skills_say_what_they_see_and_how_they_choose() {
         "skill.recharge.decision_steps=0",
         "skill.recharge.trials=0",
         "skill.recharge.applicable={ explore = -1, dock = 'learned(0.8)' }",
+        "skill.dock.ends=['docked']",
         "skill.recharge.learning={ shared_net = true, backup = 'steps', advantage_scale = 1000 }",
         "arm.full.learning={ inner_share = 1, child_inverse_temperature = 0, backup = 'persistent' }",
         "skill.dock.choice=random",
@@ -468,6 +469,63 @@ fn what_does_not_go_together_is_shown_in_the_file() {
         let shown: String = text.chars().skip(column - 1).take(*width).collect();
         assert!(*at == path && (shown.contains(line) || text.contains(line)), "{to}: {shown}\n{error}");
     }
+}
+
+/// What is replaced in a text, and by what.
+type Edits<'a> = &'a [(&'a str, &'a str)];
+
+/// What would be silently without effect, or wrong, is refused.
+#[test]
+fn thresholds_that_nothing_teaches_and_mirrors_that_show_something_else_are_refused() {
+    let learned = "'learned'";
+    // What is replaced, by what, words of the line that is shown, of the message and of the hint.
+    let cases: [(Edits<'_>, &str, &str, &str); 6] = [
+        (&[("ends = ['beside-right', 'passed-door']", "ends = []")], learned, "`right` has no goal", "a number"),
+        (&[("trials = 66", "trials = 0")], learned, "`right` has no trials", "a number"),
+        (&[("trials = 66", "planned = true")], learned, "`right` is planned", "a number"),
+        (
+            &[("applicable = { right =", "applicable = { left ="), ("['dock', 'right']", "['dock', 'left']")],
+            learned,
+            "`left` is a mirror image",
+            "a number",
+        ),
+        (
+            &[("['left', 'move+12']", "['right', 'move+12']\napplicable = { right = 'learned' }")],
+            learned,
+            "`explore` is not the root",
+            "a number",
+        ),
+        (&[("{ gamma = 0.75 }", "{ mirror_replays = true }")], "mirror_replays", "beside-right", "false"),
+    ];
+    for (edits, line, message, hint) in cases {
+        let text = edits.iter().fold(strict(), |text, (from, to)| {
+            assert!(text.contains(from), "{from}");
+            text.replacen(from, to, 1)
+        });
+        let (result, path) = family(&text, &[]);
+        let error = result.err().unwrap_or_else(|| panic!("accepted {edits:?}"));
+        println!("{error}\n");
+        assert!(error.message().contains(message) && error.hint().contains(hint), "{edits:?}\n{error}");
+        let Place::Line { path: at, text, .. } = error.place() else { panic!("{edits:?}\n{error}") };
+        assert!(*at == path && text.contains(line), "{edits:?}\n{error}");
+    }
+    for (set, message) in [
+        ("skill.dock.children=['turn+15', 'move+12']", "no turn the other way than `turn+15`"),
+        ("skill.dock.inputs=['light', 'compass']", "whose input `compass` has no mirror image"),
+        ("skill.dock.children=['right', 'move+12']", "chooses among skills"),
+    ] {
+        let error = family(FAMILY, &[set, "skill.dock.learning.mirror_replays=true"]).0.expect_err(message);
+        println!("{error}\n");
+        assert!(error.message().contains(message), "{error}");
+    }
+    let fine = ["skill.dock.learning.mirror_replays=true", "skill.dock.children=['turn-60', 'move+12', 'turn+60']"];
+    assert!(skill(&relatives(&fine), "full", "dock").learning.mirror_replays);
+    // Where nobody is paid for one side only, and no end is on one side only, a mirror does no harm.
+    let even = ["skill.right.reward={ beside-right = 3, beside-left = 3 }", "skill.right.ends=['passed-door']"];
+    assert!(family(FAMILY, &[even.as_slice(), &["skill.right.learning.mirror_replays=true"]].concat()).0.is_ok());
+    let uneven = [even[0], "skill.right.ends=['beside-left']", "skill.right.learning.mirror_replays=true"];
+    let error = family(FAMILY, &uneven).0.expect_err("an end on one side");
+    assert!(error.message().contains("`beside-right` than in `beside-left`"), "{error}");
 }
 
 #[test]

@@ -8,7 +8,7 @@ use super::read::{Item, Table, is_name};
 use super::skill::Reader;
 use super::tree::{Entry, Node};
 use super::worlds::Worlds;
-use super::{keys, mirror, robot, set};
+use super::{children, keys, mirror, robot, set};
 
 /// Name of the only arm of a config that has no `[arm.NAME]`.
 const BASE: &str = "base";
@@ -140,7 +140,9 @@ impl Arms<'_> {
         let reader = Reader { world: Some(&worlds.placed[world].world), order: &order, ..self.reader(tree) };
         let mut skills: Vec<Skill> = Vec::new();
         for &number in &order {
-            skills.push(trained(&links[number], &reader, &skills, idle)?);
+            let skill = trained(&links[number], &reader, &skills, idle)?;
+            children::learnable(&links[number].item, number == top, &skill, &skills)?;
+            skills.push(skill);
         }
         let reader = self.reader(tree);
         for (_, link) in links.iter().enumerate().filter(|(number, _)| !order.contains(number)) {

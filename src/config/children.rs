@@ -2,7 +2,7 @@
 
 use super::error::{ConfigError, suggest};
 use super::keys;
-use super::plan::{Action, Child, Choice, Persistence, Threshold};
+use super::plan::{Action, Child, Choice, Persistence, Skill, Threshold};
 use super::read::{Item, Section, argument};
 use super::tree::Value;
 use crate::learner::layout::MAX_CHILDREN;
@@ -47,6 +47,32 @@ pub(super) fn applicable(
         }
     }
     Ok(thresholds)
+}
+
+/// Refuses thresholds that nothing would teach: they are learned of the root's children, from trials that may fail.
+pub(super) fn learnable(item: &Item<'_>, root: bool, own: &Skill, skills: &[Skill]) -> Result<(), ConfigError> {
+    for (child, threshold) in own.children.iter().zip(&own.applicable) {
+        let (Child::Skill(below), Some(Threshold::Learned(_))) = (child, threshold) else { continue };
+        let child = &skills[*below];
+        let problem = if !root {
+            format!("`{}` is not the root", own.name)
+        } else if child.mirror.is_some() {
+            format!("`{}` is a mirror image", child.name)
+        } else if child.planned {
+            format!("`{}` is planned", child.name)
+        } else if child.trials == 0 {
+            format!("`{}` has no trials", child.name)
+        } else if child.ends == 0 {
+            format!("`{}` has no goal", child.name)
+        } else {
+            continue;
+        };
+        let written = item.node.get(keys::SKILL_APPLICABLE.name()).and_then(|table| table.get(&child.name));
+        let place = Item { name: item.name.clone(), node: written.unwrap_or(item.node) };
+        let message = format!("the threshold of `{}` in `{}` cannot be learned: {problem}", child.name, own.name);
+        return Err(place.error(message, format!("give it a number {}", keys::THRESHOLD)));
+    }
+    Ok(())
 }
 
 fn threshold(item: &Item<'_>) -> Result<Threshold, ConfigError> {

@@ -2,13 +2,37 @@
 
 use super::error::ConfigError;
 use super::inputs;
-use super::plan::{Event, Input, Skill};
+use super::plan::{Child, Event, Input, Skill};
 use super::read::Item;
+
+/// Whether a mirror shows an input as another reading of the same kind.
+fn mirrored(input: &Input) -> bool {
+    matches!(input, Input::Sonar { .. } | Input::SonarFar | Input::Light | Input::Bumpers)
+}
+
+/// Refuses replays seen in a mirror that would not show the same skill; `item` is where they are asked for.
+pub(super) fn check_replays(skill: &Skill, item: &Item<'_>) -> Result<(), ConfigError> {
+    let problem = if skill.is_high() {
+        Some("which chooses among skills".to_owned())
+    } else if let Some(input) = skill.inputs.iter().find(|input| !mirrored(input)) {
+        Some(format!("whose input `{}` has no mirror image", inputs::name(*input)))
+    } else if let Some(Child::Action(turn)) = skill.children.iter().find(|c| !skill.children.contains(&c.mirrored())) {
+        Some(format!("which has no turn the other way than `{}`", turn.name()))
+    } else {
+        let differs = |seen: &Event| {
+            let ends = |event: Event| skill.ends & event.bit() != 0;
+            skill.reward[*seen as usize] != skill.reward[event(*seen) as usize] || ends(*seen) != ends(event(*seen))
+        };
+        let side = Event::ALL.into_iter().find(differs);
+        side.map(|seen| format!("which sees more in `{}` than in `{}`", seen.name(), event(seen).name()))
+    };
+    let Some(problem) = problem else { return Ok(()) };
+    let message = format!("lessons of `{}`, {problem}, cannot be seen in a mirror", skill.name);
+    Err(item.error(message, format!("write skill.{}.learning.mirror_replays = false", skill.name)))
+}
 
 /// The mirror image of `source`, which is the arm's skill of that number; `item` is where it is named.
 pub(super) fn image(name: &str, (number, source): (usize, &Skill), item: &Item<'_>) -> Result<Skill, ConfigError> {
-    let mirrored =
-        |input: &&Input| matches!(input, Input::Sonar { .. } | Input::SonarFar | Input::Light | Input::Bumpers);
     if let Some(input) = source.inputs.iter().find(|input| !mirrored(input)) {
         let message = format!(
             "`{name}` cannot be the mirror image of `{}`, whose input `{}` has none",

@@ -7,7 +7,7 @@ use super::learning::{self, Idle};
 use super::plan::{Child, Event, Learning, Skill};
 use super::read::{Item, Section};
 use super::tree::{Node, Value};
-use super::{children, inputs};
+use super::{children, inputs, mirror};
 use crate::learner::layout::MAX_STARTS;
 use crate::world::World;
 
@@ -65,6 +65,9 @@ impl Reader<'_> {
             learning: self.learning(&section, &link.item, idle)?,
         };
         inputs::check(&asked, &skill, world.map_or(0, |world| world.rooms.len()))?;
+        if skill.learning.mirror_replays {
+            mirror::check_replays(&skill, &self.mirror_replays(&link.item))?;
+        }
         section.0.finish()?;
         Ok(skill)
     }
@@ -121,6 +124,16 @@ impl Reader<'_> {
         }
         let name = over.map_or_else(|| "learning".to_owned(), |over| over.name);
         learning::read(&Item { name, node: &merged }, idle)
+    }
+}
+
+/// Where replays in a mirror are asked for: in the skill's own table, or in the one below it.
+impl<'a> Reader<'a> {
+    fn mirror_replays(&self, skill: &Item<'a>) -> Item<'a> {
+        let key = keys::MIRROR_REPLAYS.name();
+        let own = skill.node.get("learning").and_then(|learning| learning.get(key));
+        let node = own.or_else(|| self.learning.and_then(|learning| learning.get(key))).unwrap_or(skill.node);
+        Item { name: keys::MIRROR_REPLAYS.path.to_owned(), node }
     }
 }
 

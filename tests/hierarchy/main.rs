@@ -1,6 +1,7 @@
 //! Trees of skills, against what is not the product: rules as sets, recursions in f64, geometry by distance fields,
 //! logistic fits by another method, and learners that train alone.
 
+mod after;
 mod backups;
 mod bench;
 mod choices;
@@ -12,3 +13,5 @@ mod oracle;
 mod persistence;
 mod planned;
 mod senses;
+mod stems;
+mod trees;

@@ -32,8 +32,14 @@ fn planned() -> (Plan, Group) {
 
 fn planner(plan: &Plan, group: &Group, skill: &Skill) -> Planner {
     let arm = &plan.arms[0];
-    let (discount, backward_cost) = (plan.teacher.discount, plan.teacher.backward_cost);
-    let terms = Terms { noise: arm.noise, robot: arm.robot, discount, backward_cost, pitch: PITCH };
+    let terms = Terms {
+        noise: arm.noise,
+        robot: arm.robot,
+        discount: plan.teacher.discount,
+        backward_cost: plan.teacher.backward_cost,
+        collision_cost: plan.teacher.collision_cost,
+        pitch: PITCH,
+    };
     Planner::new(plan.world(), &group.shared, skill, &terms)
 }
 
