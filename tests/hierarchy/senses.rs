@@ -1,10 +1,13 @@
 //! Inputs and events of skills over skills, against plain recomputations in f64 and geometry by distance fields.
 
-use super::bench::{Bench, TREE, made_up, random, readings, scratch_of};
+use super::bench::{Bench, TREE, made_up, plan_with, random, readings, scratch_of};
 use super::oracle::{P, Written, ahead, stream};
+use super::trees::{DONE, only_group, reach};
 use bytemuck::Zeroable;
+use skilltree::backend::Backend;
+use skilltree::backend::cpu::CpuBackend;
 use skilltree::experiment::senses::floor_only;
-use skilltree::learner::layout::{Agent, BASE_WORDS, MEMORY_WORD, RECORD_WORDS, Settings};
+use skilltree::learner::layout::{Agent, BASE_WORDS, LESSON_HEADER, MEMORY_WORD, RECORD_WORDS, Settings};
 use skilltree::learner::memory::{Scratch, Shared};
 use skilltree::math::rng::{Dice, Stream, roll};
 use skilltree::robot::motion::{BESIDE_LEFT, BESIDE_RIGHT, COLLISION, DOCKED, FORWARD, PASSED_DOOR};
@@ -337,4 +340,53 @@ fn events_beside_walls_are_those_of_the_geometry() {
         println!("{counts:?} {docked}");
         assert!(counts.iter().all(|count| *count > 60) && docked > 5, "{counts:?} {docked}");
     }
+}
+
+/// A skill over actions may remember too: its lessons and trials then have the words of both parts of a record.
+#[test]
+fn lessons_of_skills_that_remember_hold_what_they_do() {
+    let set = [
+        "root=door",
+        "skill.door.inputs=['sonar(60)', 'door-trace', 'range-means', 'light-trace', 'room']",
+        // It goes on after each door.
+        "skill.door.ends=[]",
+        "skill.door.lessons=4",
+        "skill.door.trials=6",
+        "skill.door.max_steps=40",
+        "teacher.bank=8",
+        "learning.taught_passes=1",
+        "learning.replays=1",
+        "robot.memory={ light = 0.75, doors = 0.875, ranges = 0.6 }",
+    ];
+    let plan = plan_with(TREE, &set);
+    let group = only_group(&plan);
+    let skill = group.shared.skills[0];
+    assert_eq!((skill.record_words as usize, skill.children, skill.bank_lessons), (RECORD_WORDS, 6, 8));
+    let mut backend = CpuBackend::new(1, None).expect("threads");
+    backend.load(group.cohort(&plan, &group.learners(&plan))).expect("memory");
+    reach(&mut backend, DONE);
+    let cohort = backend.memory().expect("memory");
+    let settings = &cohort.settings[0];
+    let stride = skill.lesson_stride as usize;
+    let taught = group.shared.bank.chunks(stride).take(8);
+    let tried = cohort.lessons[skill.memory_offset as usize..].chunks(stride).take(6);
+    let (mut doors, mut lights) = (0, 0);
+    for (number, lesson) in taught.chain(tried).enumerate() {
+        let mut expected = Memory { light: 0.0, door: [0.0; 3], means: [0.0; 2] };
+        let mut passed = false;
+        assert_eq!(lesson[0], 40, "lesson {number}");
+        for (step, record) in lesson[LESSON_HEADER..].chunks(RECORD_WORDS).take(41).enumerate() {
+            expected.take(step, record, passed, settings);
+            let memory = [&expected.means[..], &[expected.light], &expected.door].concat();
+            for (word, expected) in memory.iter().enumerate() {
+                let found = f64::from(f32::from_bits(record[MEMORY_WORD + word]));
+                assert!((found - expected).abs() < 1.0e-5, "lesson {number}, step {step}, {word}: {found} {expected}");
+            }
+            passed = (record[8] >> 24) & PASSED_DOOR != 0;
+            doors += u32::from(passed);
+            lights += u32::from(expected.light > 0.0 && expected.light < 1.0);
+        }
+    }
+    println!("{doors} {lights}");
+    assert!(doors >= 5 && lights > 20, "{doors} {lights}");
 }
