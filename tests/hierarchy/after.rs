@@ -1,9 +1,9 @@
 //! What is made of a trained tree: learned thresholds, tests under other circumstances, example trials.
 
-use super::bench::{Nets64, Tree64, inputs64, most, plan_with};
+use super::bench::{Nets64, Tree64, inputs64, most};
 use super::persistence::members;
 use super::stems::short;
-use super::trees::{HOME, only_group, reach};
+use super::trees::{home, only_group, reach};
 use bytemuck::Zeroable;
 use skilltree::backend::cpu::CpuBackend;
 use skilltree::backend::{Backend, Cohort, Stop, Test};
@@ -106,7 +106,7 @@ fn learned_thresholds_are_those_of_a_direct_fit() {
         "skill.go-home.trials=12",
         "seeds='0..3'",
     ];
-    let plan = plan_with(HOME, &set);
+    let plan = home("", &set);
     let group = only_group(&plan);
     let (dock, leave, root) = (number(&plan, "dock"), number(&plan, "leave"), number(&plan, "go-home"));
     let children = &plan.arms[0].skills[root].children;
@@ -197,11 +197,11 @@ fn summed(rooms: &[RoomSums]) -> RoomSums {
 #[test]
 fn alterations_test_what_was_learned_elsewhere() {
     let plain =
-        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/small.toml")).expect("a world");
+        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/easy.toml")).expect("a world");
     let folder = TempDir::new().expect("a folder");
     // The charger in the other room.
     let moved = folder.path().join("moved.toml");
-    std::fs::write(&moved, plain.replace("[0, 0, 24, 24]", "[144, 0, 168, 24]")).expect("a file");
+    std::fs::write(&moved, plain.replace("[0, 30, 20, 70]", "[136, 30, 156, 70]")).expect("a file");
     let text = format!(
         "[alter.same]\nnoise = {{}}\n[alter.loud]\nnoise = {{ sonar = 0.5, compass = 90.0, kind = 'uniform' }}\n\
          [alter.moved]\nworld = {moved:?}\nnoise = {{ light = 0.0 }}\n"

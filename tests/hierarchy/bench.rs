@@ -11,9 +11,14 @@ use skilltree::qnet::forward::net_of;
 use skilltree::robot::floor::Floor;
 use std::path::Path;
 
-/// A config that lies in a folder of its own; its world is the small one.
+/// A config of the small world.
 pub(crate) fn plan_with(text: &str, set: &[&str]) -> Plan {
-    let world = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/support/small.toml");
+    plan_in("small", text, set)
+}
+
+/// A config that lies in a folder of its own, in one of the tests' worlds.
+pub(crate) fn plan_in(name: &str, text: &str, set: &[&str]) -> Plan {
+    let world = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/support/{name}.toml"));
     let folder = tempfile::tempdir().expect("a folder for the config");
     let path = folder.path().join("small.toml");
     std::fs::write(&path, format!("world = {world:?}\n{text}")).expect("the config is written");

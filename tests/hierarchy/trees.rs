@@ -1,6 +1,6 @@
-//! Trees of three levels that learn from end to end, on the CPU, in the small world.
+//! Trees of three levels that learn from end to end, on the CPU, in the easy world.
 
-use super::bench::{Tree64, most, plan_with};
+use super::bench::{Tree64, most, plan_in};
 use super::persistence::{Choice, Chooser, Reason, Rules, Set, members};
 use bytemuck::Zeroable;
 use skilltree::backend::cpu::CpuBackend;
@@ -15,7 +15,7 @@ use skilltree::skill::persist::IDLE;
 use std::collections::BTreeMap;
 
 /// Home is docked to the charger; from the other room the way there leads through the door.
-pub(crate) const HOME: &str = r#"
+const HOME: &str = r#"
     title = "three levels"
     seeds = "0..4"
     root = "go-home"
@@ -49,7 +49,7 @@ pub(crate) const HOME: &str = r#"
     tests = "near-doors"
     ends = ["passed-door"]
     lessons = 10
-    trials = 80
+    trials = 60
     [skill.follow-right]
     inputs = ["sonar(30)", "bumpers"]
     reward = { beside-right = 8, collision = -10 }
@@ -94,6 +94,11 @@ pub(crate) const HOME: &str = r#"
     timeout_terminal = false
 "#;
 
+/// The three levels, with some arms.
+pub(crate) fn home(arms: &str, set: &[&str]) -> Plan {
+    plan_in("easy", &format!("{HOME}{arms}"), set)
+}
+
 /// The point beyond every skill.
 pub(crate) const DONE: Stop = Stop { skill: u32::MAX, trial: u32::MAX };
 
@@ -128,7 +133,7 @@ fn number(plan: &Plan, name: &str) -> usize {
 
 #[test]
 fn three_levels_learn_to_go_home() {
-    let plan = plan_with(HOME, &[]);
+    let plan = home("", &[]);
     let group = only_group(&plan);
     let fresh = group.cohort(&plan, &group.learners(&plan));
     let (cohort, tests) = learned(&plan, &group);
@@ -161,7 +166,7 @@ fn three_levels_learn_to_go_home() {
     }
     let [before, after] = tests.last().expect("tests of the root");
     assert_eq!(after.len(), 160);
-    assert!(achieved(after) >= 110 && achieved(after) >= achieved(before) + 60);
+    assert!(achieved(after) >= 120 && achieved(after) >= achieved(before) + 20);
     // The same starts before and after.
     let start = |episode: &Episode| (episode.start_x, episode.start_y);
     assert!(before.iter().zip(after).all(|(before, after)| start(before) == start(after)));
@@ -181,7 +186,7 @@ fn three_levels_learn_to_go_home() {
 /// Steps of tests of the root, seen one by one: which skills run below which.
 #[test]
 fn children_of_children_execute() {
-    let plan = plan_with(HOME, &[]);
+    let plan = home("", &[]);
     let group = only_group(&plan);
     let (cohort, _) = learned(&plan, &group);
     let [dock, door, right, left, leave, home] =
@@ -220,7 +225,7 @@ fn children_of_children_execute() {
     println!("{chains:?}");
     let expected = [vec![home, dock], vec![home, leave, door], vec![home, leave, right], vec![home, leave, left]];
     assert_eq!(chains.len(), expected.len());
-    assert!(expected.iter().all(|chain| chains.get(chain).is_some_and(|steps| *steps > 100)), "{chains:?}");
+    assert!(expected.iter().all(|chain| chains.get(chain).is_some_and(|steps| *steps > 20)), "{chains:?}");
 }
 
 /// The first words of a learner's memory of a skill: its trials, oldest slot first.
@@ -246,7 +251,7 @@ fn remembered_trials_follow_the_rules() {
     for set in rules {
         // The root knows both children's worth.
         let more = ["seeds='0..2'", "skill.go-home.applicable={ leave = 0.5, dock = 0.25 }"];
-        let plan = plan_with(HOME, &[&more, set].concat());
+        let plan = home("", &[&more, set].concat());
         let group = only_group(&plan);
         let (cohort, _) = learned(&plan, &group);
         let skills = &plan.arms[0].skills;
@@ -329,7 +334,7 @@ fn remembered_trials_follow_the_rules() {
         }
     }
     println!("{steps} {held} {applied} {idle_worths} {reasons_seen:?}");
-    assert!(steps > 3000 && held > 1000 && applied > 300 && idle_worths > 300);
+    assert!(steps > 2000 && held > 500 && applied > 100 && idle_worths > 200);
     for reason in [Reason::Unbound, Reason::Idle, Reason::Achieved, Reason::Fresh, Reason::Lost, Reason::Late] {
         assert!(reasons_seen.contains_key(&reason), "{reason:?}: {reasons_seen:?}");
     }
@@ -354,7 +359,7 @@ fn baselines_choose_in_training_too() {
     for choice in ["random", "ordered"] {
         let short = ["skill.dock.trials=4", "skill.pass-door.trials=4", "skill.follow-right.trials=2", "seeds='0..2'"];
         let root = format!("skill.go-home.choice={choice}");
-        let plan = plan_with(HOME, &[short.as_slice(), &[&root, "skill.go-home.applicability=true"]].concat());
+        let plan = home("", &[short.as_slice(), &[&root, "skill.go-home.applicability=true"]].concat());
         let (cohort, _) = learned(&plan, &only_group(&plan));
         let mut counts = BTreeMap::<Vec<usize>, [u32; 2]>::new();
         for learner in 0..2 {
@@ -382,7 +387,7 @@ fn half_of_the_replays_are_seen_in_a_mirror() {
     let short = ["seeds='0..2'", "root=pass-door", "skill.pass-door.trials=6", "skill.pass-door.lessons=3"];
     for mirror in [true, false] {
         let set = format!("skill.pass-door.learning.mirror_replays={mirror}");
-        let plan = plan_with(HOME, &[short.as_slice(), &["learning.taught_passes=5", &set]].concat());
+        let plan = home("", &[short.as_slice(), &["learning.taught_passes=5", &set]].concat());
         let group = only_group(&plan);
         let mut backend = CpuBackend::new(1, Some(1)).expect("threads");
         backend.load(group.cohort(&plan, &group.learners(&plan))).expect("memory");
