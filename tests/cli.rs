@@ -19,7 +19,7 @@ struct Desk(TempDir);
 impl Desk {
     fn new() -> Self {
         let desk = Self(TempDir::new().unwrap());
-        desk.write("quick.toml", shipped("quick.toml"));
+        desk.write("docking.toml", shipped("docking.toml"));
         desk.write("worlds/office.toml", shipped("worlds/office.toml"));
         desk
     }
@@ -108,34 +108,34 @@ fn config_mistakes_name_their_line() {
     fs::create_dir(desk.path().join("folder")).unwrap();
     desk.refuses(&["run", "nowhere.toml"], 2, &["nowhere.toml", "no such file"]);
     desk.refuses(&["run", "folder"], 2, &["folder", "name a file"]);
-    desk.refuses(&["run", "quick.toml/x"], 2, &["quick.toml/x"]);
+    desk.refuses(&["run", "docking.toml/x"], 2, &["docking.toml/x"]);
     desk.refuses(&["run", "worlds/office.toml"], 2, &["worlds/office.toml", "`world` is missing"]);
     let deep = format!("world = {}", "[".repeat(100_000));
     let cases: [(&str, Vec<u8>, &[&str]); 24] = [
         ("empty", vec![], &["`world` is missing"]),
         ("binary", vec![0xff, 0xfe, 0], &["not text"]),
         ("deep", deep.into(), &["deep.toml:1:"]),
-        ("syntax", edited("quick.toml", "seed  = 1993", "seed  = = 1993").into(), &["syntax.toml:", "not valid TOML", "^"]),
-        ("cut", shipped("quick.toml").split_inclusive("at       = [0").next().unwrap().into(), &["cut.toml:", "^"]),
-        ("twice", edited("quick.toml", "seed  = 1993", "seed  = 1993\nseed = 2").into(), &["twice.toml:", "not valid TOML"]),
-        ("key", edited("quick.toml", "momentum  = 0.0\ninit      = 0.2\ngamma     = 0.95\nlambda    = 0.8\ninverse_temperature_start = 10.0\ninverse_temperature_end   = 80.0\npolicy_threshold = 0.001\nreplays          = 30\nmemory           = 100\ntaught_passes    = 5\ntaught_replays   = 2\ntimeout_terminal = false\nmask_blocked     = false\n\n# TD(0)", "momentun = 0.0\n\n# TD(0)").into(), &["key.toml:", "momentun", "did you mean `momentum`?"]),
-        ("type", edited("quick.toml", "gamma        = 0.9", "gamma        = 'high'").into(), &["type.toml:", "gamma", "'high'"]),
-        ("nan", edited("quick.toml", "gamma        = 0.9", "gamma        = nan").into(), &["nan.toml:", "finite"]),
-        ("infinite", edited("quick.toml", "rate         = 0.0015", "rate         = inf").into(), &["infinite.toml:", "finite"]),
-        ("huge", edited("quick.toml", "seed  = 1993", "seed  = 99999999999999999999").into(), &["huge.toml:", "too large"]),
-        ("range", edited("quick.toml", "gamma        = 0.9", "gamma        = 1.1").into(), &["range.toml:", "between 0 and 1"]),
-        ("under", edited("quick.toml", "trials    = 150", "trials    = -1").into(), &["under.toml:", "trials"]),
-        ("negative", edited("quick.toml", "sonar    = 0.10", "sonar    = -0.10").into(), &["negative.toml:", "sonar"]),
-        ("date", edited("quick.toml", "seed  = 1993", "seed  = 1993-01-01").into(), &["date.toml:", "date"]),
-        ("unknown-section", shipped("quick.toml").replace("[evaluate]", "[evaluat]").into(), &["unknown-section.toml:", "did you mean `evaluate`?"]),
-        ("action", edited("quick.toml", "\"move+12\", ", "\"fly\", ").into(), &["action.toml:", "`fly`"]),
-        ("event", edited("quick.toml", "docked = 100", "doked = 100").into(), &["event.toml:", "did you mean `docked`?"]),
-        ("region", edited("quick.toml", "tests     = \"light-area\"", "tests     = \"attic\"").into(), &["region.toml:", "`attic`"]),
-        ("shares", edited("quick.toml", "light-area = 0.8", "light-area = 0.9").into(), &["shares.toml:", "sum to 1"]),
-        ("input", edited("quick.toml", "\"sonar(60)\"", "\"sonar(0)\"").into(), &["input.toml:", "sonar"]),
-        ("order", edited("quick.toml", "[0, 25, 50,", "[0, 50, 25,").into(), &["order.toml:", "ascending"]),
-        ("noworld", edited("quick.toml", "worlds/office.toml", "worlds/offce.toml").into(), &["noworld.toml:", "no such file", "worlds/offce.toml"]),
-        ("isfolder", edited("quick.toml", "\"worlds/office.toml\"", "\"worlds\"").into(), &["isfolder.toml:", "it is a folder"]),
+        ("syntax", edited("docking.toml", "seed  = 1993", "seed  = = 1993").into(), &["syntax.toml:", "not valid TOML", "^"]),
+        ("cut", shipped("docking.toml").split_inclusive("at       = [0").next().unwrap().into(), &["cut.toml:", "^"]),
+        ("twice", edited("docking.toml", "seed  = 1993", "seed  = 1993\nseed = 2").into(), &["twice.toml:", "not valid TOML"]),
+        ("key", edited("docking.toml", "momentum  = 0.0\ninit      = 0.2\ngamma     = 0.95\nlambda    = 0.8\ninverse_temperature_start = 10.0\ninverse_temperature_end   = 80.0\npolicy_threshold = 0.001\nreplays          = 30\nmemory           = 100\ntaught_passes    = 5\ntaught_replays   = 2\ntimeout_terminal = false\nmask_blocked     = false\n\n# TD(0)", "momentun = 0.0\n\n# TD(0)").into(), &["key.toml:", "momentun", "did you mean `momentum`?"]),
+        ("type", edited("docking.toml", "gamma        = 0.9", "gamma        = 'high'").into(), &["type.toml:", "gamma", "'high'"]),
+        ("nan", edited("docking.toml", "gamma        = 0.9", "gamma        = nan").into(), &["nan.toml:", "finite"]),
+        ("infinite", edited("docking.toml", "rate         = 0.0015", "rate         = inf").into(), &["infinite.toml:", "finite"]),
+        ("huge", edited("docking.toml", "seed  = 1993", "seed  = 99999999999999999999").into(), &["huge.toml:", "too large"]),
+        ("range", edited("docking.toml", "gamma        = 0.9", "gamma        = 1.1").into(), &["range.toml:", "between 0 and 1"]),
+        ("under", edited("docking.toml", "trials    = 300                     # paper", "trials    = -1").into(), &["under.toml:", "trials"]),
+        ("negative", edited("docking.toml", "sonar    = 0.10", "sonar    = -0.10").into(), &["negative.toml:", "sonar"]),
+        ("date", edited("docking.toml", "seed  = 1993", "seed  = 1993-01-01").into(), &["date.toml:", "date"]),
+        ("unknown-section", shipped("docking.toml").replace("[evaluate]", "[evaluat]").into(), &["unknown-section.toml:", "did you mean `evaluate`?"]),
+        ("action", edited("docking.toml", "\"move+12\", ", "\"fly\", ").into(), &["action.toml:", "`fly`"]),
+        ("event", edited("docking.toml", "docked = 100", "doked = 100").into(), &["event.toml:", "did you mean `docked`?"]),
+        ("region", edited("docking.toml", "tests     = \"light-area\"", "tests     = \"attic\"").into(), &["region.toml:", "`attic`"]),
+        ("shares", edited("docking.toml", "light-area = 0.8", "light-area = 0.9").into(), &["shares.toml:", "sum to 1"]),
+        ("input", edited("docking.toml", "\"sonar(60)\"", "\"sonar(0)\"").into(), &["input.toml:", "sonar"]),
+        ("order", edited("docking.toml", "[0, 25, 50,", "[0, 50, 25,").into(), &["order.toml:", "ascending"]),
+        ("noworld", edited("docking.toml", "worlds/office.toml", "worlds/offce.toml").into(), &["noworld.toml:", "no such file", "worlds/offce.toml"]),
+        ("isfolder", edited("docking.toml", "\"worlds/office.toml\"", "\"worlds\"").into(), &["isfolder.toml:", "it is a folder"]),
     ];
     for (name, text, says) in cases {
         let file = format!("{name}.toml");
@@ -170,7 +170,7 @@ fn world_mistakes_name_their_line() {
         ("L2 = [80, 90, 225]", "L2 = [8000, 90, 225]", "L2", &["worlds/bad.toml:"]),
         ("[charger]", "[chargre]", "did you mean `charger`?", &["worlds/bad.toml:"]),
     ];
-    desk.write("bad.toml", edited("quick.toml", "worlds/office.toml", "worlds/bad.toml"));
+    desk.write("bad.toml", edited("docking.toml", "worlds/office.toml", "worlds/bad.toml"));
     for (from, to, words, says) in cases {
         desk.write("worlds/bad.toml", edited("worlds/office.toml", from, to));
         let said: Vec<&str> = says.iter().copied().chain([words]).collect();
@@ -196,7 +196,7 @@ fn world_mistakes_name_their_line() {
 #[test]
 fn usage_mistakes_are_refused_before_anything_is_done() {
     let desk = Desk::new();
-    let run = ["run", "quick.toml", "--out", "new"];
+    let run = ["run", "docking.toml", "--out", "new"];
     let cases: [(&[&str], &[&str]); 36] = [
         (&["--seeds", "x"], &["--seeds x", "`x` is not a seed"]),
         (&["--seeds", "3..1"], &["--seeds 3..1", "holds no seed"]),
@@ -240,7 +240,7 @@ fn usage_mistakes_are_refused_before_anything_is_done() {
     }
     desk.refuses(&["run"], 2, &["<CONFIG>"]);
     desk.refuses(&["report"], 2, &["<DIR>"]);
-    desk.refuses(&["probe", "quick.toml"], 2, &["--at"]);
+    desk.refuses(&["probe", "docking.toml"], 2, &["--at"]);
     desk.refuses(&["dance"], 2, &["dance"]);
     // A backend is asked for in vain before the folder is made.
     let before = tree(desk.path());
@@ -271,9 +271,9 @@ fn poses_and_actions_that_cannot_be_are_refused() {
         ("", "--at"),
         (",,", "three"),
     ] {
-        desk.refuses(&["probe", "quick.toml", "--at", at], 2, &["--at", says]);
+        desk.refuses(&["probe", "docking.toml", "--at", at], 2, &["--at", says]);
     }
-    let probe = ["probe", "quick.toml", "--at", "60,60,0"];
+    let probe = ["probe", "docking.toml", "--at", "60,60,0"];
     for (more, says) in [
         (&["--actions", "move+12,fly"][..], &["`fly`", "move+12"][..]),
         (&["--actions", "move+13"], &["`move+13`"]),
@@ -299,7 +299,7 @@ fn places_that_cannot_be_written_are_refused() {
     ];
     for (out, says) in cases {
         let tiny = ["--backend", "cpu", "--set", "teacher.bank=10", "--set", "teacher.episodes=1"];
-        desk.refuses(&[&["run", "quick.toml", "--out", out], &tiny[..]].concat(), 1, &[says, "--out"][..1]);
+        desk.refuses(&[&["run", "docking.toml", "--out", out], &tiny[..]].concat(), 1, &[says, "--out"][..1]);
     }
 }
 
@@ -307,7 +307,7 @@ fn places_that_cannot_be_written_are_refused() {
 fn another_experiments_folder_is_left_alone() {
     let desk = Desk::new();
     let run = desk.run("run");
-    let line = ["run", "quick.toml", "--out", "run"];
+    let line = ["run", "docking.toml", "--out", "run"];
     desk.refuses(&line, 1, &["another config.toml", "--out"]);
     let config = run.join("config.toml");
     let saved = fs::read(&config).unwrap();
@@ -477,8 +477,8 @@ fn a_closed_or_full_output_is_no_panic() {
     let desk = Desk::new();
     let run = desk.run("run");
     let lines: [Vec<&str>; 5] = [
-        vec!["probe", "quick.toml", "--at", "L2", "--json", "--actions", "turn+15,turn+15"],
-        vec!["probe", "quick.toml", "--at", "L2"],
+        vec!["probe", "docking.toml", "--at", "L2", "--json", "--actions", "turn+15,turn+15"],
+        vec!["probe", "docking.toml", "--at", "L2"],
         vec!["report", run.to_str().unwrap()],
         vec!["devices"],
         vec!["devices", "--json"],
@@ -557,7 +557,7 @@ fn bare_room() -> Desk {
         [charger]\nbox = [0, 0, 24, 24]\ntolerance = 30\n[light]\nat = [12, 12]\nrange = 200\n\
         [places]\nmiddle = [180.5, 210.25, -90]\n";
     desk.write("worlds/bare.toml", world);
-    desk.write("bare.toml", edited("quick.toml", "worlds/office.toml", "worlds/bare.toml"));
+    desk.write("bare.toml", edited("docking.toml", "worlds/office.toml", "worlds/bare.toml"));
     desk
 }
 

@@ -10,7 +10,7 @@ fn a_gpu_that_is_not_there_is_refused() {
     let dir = TempDir::new().unwrap();
     let out = dir.path().join("run");
     let mut line = skilltree(std::path::Path::new(env!("CARGO_MANIFEST_DIR")));
-    line.args(["run", "configs/quick.toml", "--backend", "gpu", "--out"]).arg(&out);
+    line.args(["run", "configs/docking.toml", "--backend", "gpu", "--out"]).arg(&out);
     let output = line
         .env("VK_DRIVER_FILES", "/nonexistent")
         .env("VK_ICD_FILENAMES", "/nonexistent")

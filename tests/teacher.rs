@@ -176,6 +176,14 @@ fn docking_values_are_those_of_the_shortest_paths() {
         close(back, 0.9 * 100.0 * 0.9_f64.powi(3 + 3 - 1) - 5.0, || "backward".to_owned());
         let bump = planner.worth(&shared, 0, on_line(216.0, 0.0, quarters), Action::Forward);
         close(bump, 0.9 * 100.0 * 0.9_f64.powi(3 + 16 - 1) - 10.0, || "bump".to_owned());
+        // The teacher's own cost of collisions comes on top, and changes nothing where nobody needs to collide.
+        if quarters == 1 {
+            let dear = Terms { collision_cost: 7.0, ..terms(SILENT, 5.0, MOVE as f32) };
+            let planner = Planner::new(&world, &shared, &skill, &dear);
+            check_paths(&planner, &shared, &actions(&skill), &found, quarters);
+            let bump = planner.worth(&shared, 0, on_line(216.0, 0.0, quarters), Action::Forward);
+            close(bump, 0.9 * 100.0 * 0.9_f64.powi(3 + 16 - 1) - 17.0, || "dear bump".to_owned());
+        }
     }
 }
 

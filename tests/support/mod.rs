@@ -22,10 +22,10 @@ pub(crate) fn skilltree(dir: &Path) -> Command {
     command
 }
 
-/// A tiny run of `configs/quick.toml` on the CPU.
+/// A tiny run of `configs/docking.toml` on the CPU.
 pub(crate) fn tiny(out: &Path, more: &[&str]) -> Command {
     let mut command = skilltree(Path::new(env!("CARGO_MANIFEST_DIR")));
-    command.args(["run", "configs/quick.toml", "--backend", "cpu", "--out"]).arg(out);
+    command.args(["run", "configs/docking.toml", "--backend", "cpu", "--out"]).arg(out);
     for cut in CUTS {
         command.args(["--set", cut]);
     }
