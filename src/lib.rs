@@ -1,6 +1,6 @@
 //! `skilltree` trains thousands of small simulated robots at once, each learning its own tree of skills by
 //! reinforcement, on any GPU or on the CPU, and gets the same bytes on both. It reproduces Long-Ji Lin,
-//! "Hierarchical Learning of Robot Skills by Reinforcement" (1993); today it covers section V, docking.
+//! "Hierarchical Learning of Robot Skills by Reinforcement" (1993).
 //!
 //! # One learner is one workgroup of 32 lanes
 //!
@@ -13,6 +13,20 @@
 //! moves it on by at most *n* quanta (one trial step, or one replayed transition), so a dispatch can be as
 //! short as a watchdog wants it. Kernel [`mod@evaluate`] runs greedy tests with the nets read-only, and
 //! kernel [`mod@step`] lets a robot carry out given actions.
+//!
+//! # A skill tree is data
+//!
+//! A skill is a Q-function over children, and a child is an action or a skill with a lower number: nothing else
+//! tells the levels apart. One step of a robot ([`skill::act`]) looks, asks the skills that some applicability
+//! depends on, children first ([`skill::act::watch`]), lets the root choose among what applicability and persistence
+//! allow ([`skill::persist`]), and goes down to an action ([`skill::act::descend`]). What an action earned is settled
+//! by the next look, for some rewards depend on what is seen. A recorded step keeps what was allowed and whether the
+//! choice was free, so that [`lesson::replay`] can learn from every step or from decisions alone. The same functions
+//! serve training and tests.
+//!
+//! Skills are learned in order, children before parents. Arms of an experiment that differ in their root alone share
+//! the rest: it is trained once for each seed, and each arm goes on from a copy ([`experiment::train`]), with the bytes
+//! of a learner that trained alone.
 //!
 //! # Twins
 //!
@@ -48,6 +62,11 @@
 //! - All learners of a cohort are in one world: its floor plan lies in a uniform buffer, where one load
 //!   serves all lanes.
 //! - `record` stands before `experiment`, which commits cohorts through it.
+//! - `skill` stands behind `qnet`: a skill over skills asks nets before it chooses.
+//! - Memories of a trial (traces of light and doors, means of ranges) belong to the robot and not to a skill: all
+//!   skills of a tree may take them as inputs.
+//! - Thresholds are learned on the host, between two skills, from nets and lessons that the device hands over once:
+//!   one implementation serves every backend.
 pub mod advance;
 pub mod backend;
 pub mod cli;

@@ -23,7 +23,7 @@ const ROBOT: RGBColor = RGBColor(0x00, 0x72, 0xb2);
 const RAY: RGBColor = RGBColor(0xd5, 0x5e, 0x00);
 const ROOM: RGBColor = RGBColor(0xb4, 0xb4, 0xb4);
 
-/// Draws the floor plan with its rooms, doors, charger, light and places, in [`LARGE`] or [`SMALL`] size.
+/// Draws the floor plan with its rooms, doors, charger, light and places, large or small.
 pub fn draw_world(world: &World, side: f64) -> String {
     let ring = if world.light.is_some() { " Dashed: range of the light." } else { "" };
     let legend = if side < LARGE { String::new() } else { format!(" Arrows: named places.{ring}") };

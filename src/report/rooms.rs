@@ -63,7 +63,7 @@ pub fn success(cell: &Cell, room: usize) -> Vec<f64> {
     cell.rooms[room].iter().map(Score::success).collect()
 }
 
-/// The value that only [`WORST`] of the seeds fall short of.
+/// The value that only 5 % of the seeds fall short of.
 pub fn low_quantile(sorted: &[f64]) -> f64 {
     quantile(sorted, WORST)
 }
