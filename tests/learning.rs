@@ -1,6 +1,10 @@
 //! Learning against what is not the product: plain f64 nets with the standard library's tanh, finite differences, the
 //! forward view of TD(lambda), returns computed by hand, exact softmax and exact distributions.
 
+#[path = "support/made_up.rs"]
+mod made_up;
+
+use made_up::made_up;
 use skilltree::backend::cpu::CpuBackend;
 use skilltree::backend::{Backend, Cohort, Stop};
 use skilltree::config::{Overrides, load, plan::Plan};
@@ -145,17 +149,6 @@ struct Lesson {
     end: u32,
 }
 
-/// Senses of a made-up observation.
-fn senses(next: &mut impl FnMut() -> f64) -> [u32; BASE_WORDS] {
-    let mut record = [0; BASE_WORDS];
-    for ray in 0..24 {
-        record[ray / 4] |= ((next() * 128.0) as u32) << (8 * (ray % 4));
-    }
-    record[6] = (next() * 268_435_456.0) as u32;
-    record[7] = ((next() * 360.0) as f32).to_bits();
-    record
-}
-
 /// Scratch memory with the record of made-up senses.
 fn scratch_of(senses: &[u32; BASE_WORDS]) -> Scratch {
     let mut record = [0; RECORD_WORDS];
@@ -240,7 +233,7 @@ fn q_values_match_plain_f64_nets() {
         let mut next = random(3);
         let mut spread = 0.0_f64;
         for _ in 0..200 {
-            let mut scratch = scratch_of(&senses(&mut next));
+            let mut scratch = scratch_of(&made_up(&mut next));
             encode(&bench.shared, &mut scratch, &bench.shared.skills[0], false);
             forward(&bench.nets, &mut scratch, &bench.shared.skills[0], 0);
             let x = inputs_of(&scratch.record);
@@ -272,8 +265,8 @@ fn one_replayed_transition_descends_the_gradient() {
         let mut bench = Bench::new(&set);
         bench.settings[0].rate = 256.0;
         bench.settings[0].beta1 = 0.0;
-        let step = Step { senses: senses(&mut next), child, allowed: ALL, reward };
-        bench.keep(&Lesson { steps: vec![step], last: senses(&mut next), end: ENDED });
+        let step = Step { senses: made_up(&mut next), child, allowed: ALL, reward };
+        bench.keep(&Lesson { steps: vec![step], last: made_up(&mut next), end: ENDED });
         let before = bench.nets.clone();
         let net = Net::of(&bench, child);
         let returns = bench.replay(1);
@@ -310,7 +303,7 @@ fn momentum_carries_the_last_change_on() {
     bench.settings[0].beta1 = 0.5;
     let mut next = random(5);
     let skill = bench.shared.skills[0];
-    let mut scratch = scratch_of(&senses(&mut next));
+    let mut scratch = scratch_of(&made_up(&mut next));
     encode(&bench.shared, &mut scratch, &skill, false);
     forward(&bench.nets, &mut scratch, &skill, 0);
     let start = Net::of(&bench, 2);
@@ -351,7 +344,7 @@ fn adam_follows_the_formula(epsilon: &str, rate: &str) {
     let (mut mean, mut square) = (vec![0.0; net.0.len()], vec![0.0; net.0.len()]);
     for time in 1..=3 {
         let reward = [80.0, -50.0, 30.0][time - 1];
-        let step = Step { senses: senses(&mut next), child, allowed: ALL, reward };
+        let step = Step { senses: made_up(&mut next), child, allowed: ALL, reward };
         bench.keep(&Lesson { steps: vec![step], last: step.senses, end: ENDED });
         let returns = bench.replay(1);
         // Kingma and Ba, algorithm 1, with the bias corrections in the rate (end of their section 2).
@@ -424,7 +417,7 @@ const LEFT: u32 = 2;
 fn five_steps(end: u32, last_reward: f32) -> Lesson {
     let mut next = random(8);
     let mut at = |bumpers: u32| {
-        let mut record = senses(&mut next);
+        let mut record = made_up(&mut next);
         record[6] = record[6] & 0x00ff_ffff | bumpers << 24;
         record
     };
@@ -542,14 +535,14 @@ fn returns_of_random_lessons_match_the_forward_view() {
         let terminal = settings.timeout_terminal == 1;
         let count = 1 + (next() * 30.0) as usize;
         let step = |next: &mut dyn FnMut() -> f64| Step {
-            senses: senses(&mut || next()),
+            senses: made_up(&mut || next()),
             child: (next() * 6.0) as u32,
             allowed: ALL,
             reward: if next() < 0.3 { (next() * 200.0 - 100.0) as f32 } else { 0.0 },
         };
         let taken = (0..count).map(|_| step(&mut next)).collect();
         let end = if next() < 0.5 { ENDED } else { CUT };
-        let lesson = Lesson { steps: taken, last: senses(&mut next), end };
+        let lesson = Lesson { steps: taken, last: made_up(&mut next), end };
 
         let nets: Vec<Net> = (0..6).map(|child| Net::of(&bench, child)).collect();
         let values =

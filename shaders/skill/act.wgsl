@@ -13,27 +13,14 @@ var<workgroup> value: array<f32, MAX_SKILLS>;
 var<workgroup> kept: array<array<f32, MAX_CHILDREN>, MAX_SKILLS>;
 
 fn place(pose: Pose) {
+    agent = Agent();
     agent.x = pose.x;
     agent.y = pose.y;
     agent.heading = pose.heading;
-    agent.bumpers = 0u;
-    agent.step = 0u;
     agent.origin = room_of(pose.x, pose.y);
     agent.blocked = NO_ACTION;
-    agent.masks = 0u;
     agent.action = NO_ACTION;
-    agent.events = 0u;
-    agent.earned = 0.0f;
-    agent.reward = 0.0f;
-    agent.returned = 0.0f;
     agent.discount = 1.0f;
-    agent.collisions = 0u;
-    agent.east_west = 0.0f;
-    agent.north_south = 0.0f;
-    agent.light = 0.0f;
-    agent.door = 0.0f;
-    agent.door_cosine = 0.0f;
-    agent.door_sine = 0.0f;
     for (var n = 0u; n < MAX_SKILLS; n++) {
         agent.run[n] = IDLE;
     }

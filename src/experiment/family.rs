@@ -26,22 +26,14 @@ pub fn families(plan: &Plan) -> Vec<Family> {
 }
 
 fn related(a: &Arm, b: &Arm) -> bool {
-    let below = |arm: &Arm| arm.skills[..arm.skills.len() - 1].to_vec();
-    (a.world, a.noise, a.robot) == (b.world, b.noise, b.robot) && below(a) == below(b)
+    let below = |arm: &Arm| arm.skills.len() - 1;
+    (a.world, a.noise, a.robot) == (b.world, b.noise, b.robot) && a.skills[..below(a)] == b.skills[..below(b)]
 }
 
 impl Family {
     /// Most bytes that a learner of any of the arms takes.
     pub fn bytes_per_learner(&self, groups: &[Group]) -> usize {
         self.arms.iter().map(|arm| group_of(groups, *arm).shape.bytes_per_learner()).max().unwrap_or(1)
-    }
-
-    /// Trials below the root, and of an arm's root.
-    pub fn trials(&self, plan: &Plan, arm: usize) -> (u64, u64) {
-        let skills = &plan.arms[arm].skills;
-        let sum = |range: &[crate::config::plan::Skill]| range.iter().map(|skill| u64::from(skill.trials)).sum();
-        let (below, root) = skills.split_at(skills.len() - 1);
-        (sum(below), sum(root))
     }
 
     /// The seeds of which some arm still lacks its learner.

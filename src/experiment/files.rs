@@ -4,7 +4,6 @@ use super::family::group_of;
 use super::group::{Group, LearnerId};
 use super::result::{LearnerResult, RoomSums};
 use super::train::unpack;
-use crate::config::plan::Child;
 use crate::config::plan::Plan;
 use crate::learner::layout::{LANES, ROW_WORDS};
 use crate::qnet::forward::net_of;
@@ -203,10 +202,7 @@ impl Results<'_> {
                 let (net, output) = if plan.nets == 1 { (0, number) } else { (number, 0) };
                 let rows = &nets[net_of(plan, 0, net as u32) as usize..].as_chunks::<LANES>().0[..plan.rows as usize];
                 written.push(NetWeights {
-                    child: match child {
-                        Child::Action(action) => action.name().to_owned(),
-                        Child::Skill(below) => arm.skills[*below].name.clone(),
-                    },
+                    child: arm.name_of(*child).to_owned(),
                     inputs,
                     hidden,
                     w1: (0..hidden).flat_map(|unit| (0..inputs).map(move |input| rows[input][unit])).collect(),
@@ -234,10 +230,9 @@ impl Results<'_> {
         let arm = &self.plan.arms[result.id.arm];
         let Some(root) = arm.skills.last() else { return String::new() };
         let own = root.children.iter().zip(&root.applicable).zip(&result.thresholds);
-        let text = own.filter_map(|((child, threshold), value)| match child {
-            Child::Skill(below) if threshold.is_some() => Some(format!("{}={value}", arm.skills[*below].name)),
-            _ => None,
-        });
+        // Only skills have thresholds.
+        let text =
+            own.filter_map(|((child, threshold), value)| threshold.map(|_| format!("{}={value}", arm.name_of(*child))));
         text.collect::<Vec<_>>().join(",")
     }
 }

@@ -1,7 +1,7 @@
 //! Arms that can train in one cohort: their skills agree in all but numbers, and one teacher serves them.
 
 use crate::backend::Cohort;
-use crate::config::plan::{Action, Arm, Child, Event, Plan, Skill};
+use crate::config::plan::{Action, Arm, Event, Plan, Skill};
 use crate::learner::build::{Shape, ShapeError};
 use crate::learner::layout::{BASE_WORDS, SkillPlan};
 use crate::learner::memory::Shared;
@@ -91,7 +91,7 @@ struct Task {
     terms: Terms,
     reward: [f32; Event::ALL.len()],
     ends: u32,
-    children: Vec<Child>,
+    actions: Vec<Action>,
 }
 
 /// Planners, and which of their tests have been made: arms share most tasks.
@@ -214,28 +214,32 @@ fn lay_out(members: &[&Arm], world: &crate::world::World) -> Result<(Shape, Shar
     Ok((shape, shared))
 }
 
-fn task_of(plan: &Plan, arm: &Arm, skill: &Skill) -> Task {
-    let terms = Terms {
+/// What the teacher plans an arm's skills with.
+pub fn terms_of(plan: &Plan, arm: &Arm) -> Terms {
+    Terms {
         noise: arm.noise,
         robot: arm.robot,
         discount: plan.teacher.discount,
         backward_cost: plan.teacher.backward_cost,
         collision_cost: plan.teacher.collision_cost,
         pitch: PITCH,
-    };
-    let all = || Action::ALL.map(Child::Action).to_vec();
-    let children = if skill.is_high() { all() } else { skill.children.clone() };
-    Task { world: arm.world, terms, reward: skill.reward, ends: skill.ends, children }
+    }
+}
+
+fn task_of(plan: &Plan, arm: &Arm, skill: &Skill) -> Task {
+    let terms = terms_of(plan, arm);
+    Task { world: arm.world, terms, reward: skill.reward, ends: skill.ends, actions: skill.actions() }
 }
 
 /// A skill's shape as the planner drives it: over actions.
 fn driven(plan: &SkillPlan, skill: &Skill) -> SkillPlan {
     let mut driven = *plan;
     if skill.is_high() {
-        driven.children = Action::ALL.len() as u32;
+        let actions = skill.actions();
+        driven.children = actions.len() as u32;
         driven.record_words = BASE_WORDS as u32;
         driven.thresholded = 0;
-        for (code, action) in driven.child.iter_mut().zip(Action::ALL) {
+        for (code, action) in driven.child.iter_mut().zip(actions) {
             *code = action as u32;
         }
     }

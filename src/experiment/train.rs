@@ -8,7 +8,7 @@ use super::group::{Group, LearnerId};
 use super::result::{LearnerResult, RoomSums, TestResult};
 use super::thresholds::{Fit, fit};
 use crate::backend::{Backend, BackendError, Cohort, Stop, Test};
-use crate::config::plan::{Plan, Threshold};
+use crate::config::plan::{Child, Plan, Threshold};
 use crate::evaluate::STATE_ACHIEVED;
 use crate::learner::layout::{Cursor, Episode, LANES, ROW_WORDS, SkillPlan};
 use crate::learner::phase::PHASE_FAILED;
@@ -93,17 +93,22 @@ pub fn train(
     climb(plan, group, &mut results, backend, first..skills, progress)?;
     // The last trial of the last skill is behind every learner: let them close.
     reach(backend, Stop { skill: u32::MAX, trial: u32::MAX }, &mut |_| {})?;
-    let cohort = backend.memory()?.clone();
+    let cohort = backend.memory()?;
     for (index, result) in results.iter_mut().enumerate() {
         let cursor = &cohort.cursors[index];
         let nets = &cohort.nets[index * cohort.nets_stride..][..cohort.nets_stride];
-        result.rows = rows_of(&cohort, index).to_vec();
+        result.rows = rows_of(cohort, index).to_vec();
         result.weights = pack(nets, &group.shape.skills);
         result.thresholds = cohort.settings[(index + 1) * skills - 1].threshold.to_vec();
         result.failed = cursor.phase == PHASE_FAILED;
         result.updates = cursor.updates;
     }
-    alter(plan, group, cohort, &mut results, backend)?;
+    // The planner's tables are of the world that it knows.
+    let planned = cohort.shared.skills.iter().any(|skill| skill.planned > 0);
+    if !plan.alterations.is_empty() && !planned {
+        let trained = without_lessons(cohort);
+        alter(plan, group, trained, &mut results, backend)?;
+    }
     Ok(results)
 }
 
@@ -116,7 +121,7 @@ fn graft(plan: &Plan, cohort: &mut Cohort, index: usize, result: &mut LearnerRes
     let root = &plan.arms[result.id.arm].skills[cohort.skills - 1];
     let settings = &mut cohort.settings[(index + 1) * cohort.skills - 1];
     for (child, threshold) in root.applicable.iter().enumerate() {
-        let crate::config::plan::Child::Skill(skill) = root.children[child] else { continue };
+        let Child::Skill(skill) = root.children[child] else { continue };
         if let (Some(Threshold::Learned(probability)), Some(fit)) = (threshold, stem.fits[skill]) {
             settings.threshold[child] = fit.threshold(*probability);
         }
@@ -172,10 +177,6 @@ fn alter(
     backend: &mut dyn Backend,
 ) -> Result<(), BackendError> {
     let root = group.shape.skills.len() - 1;
-    // The planner's tables are of the world that it knows.
-    if trained.shared.skills.iter().any(|skill| skill.planned > 0) {
-        return Ok(());
-    }
     for (number, (alteration, shared)) in plan.alterations.iter().zip(&group.altered).enumerate() {
         let mut cohort = trained.clone();
         cohort.shared.clone_from(shared);
@@ -200,6 +201,23 @@ fn alter(
         }
     }
     Ok(())
+}
+
+/// What tests need of a cohort: lessons are most of its memory, and only training reads them.
+fn without_lessons(cohort: &Cohort) -> Cohort {
+    let learners = cohort.cursors.len();
+    Cohort {
+        shared: cohort.shared.clone(),
+        skills: cohort.skills,
+        settings: cohort.settings.clone(),
+        cursors: cohort.cursors.clone(),
+        nets_stride: cohort.nets_stride,
+        nets: cohort.nets.clone(),
+        lessons_stride: 1,
+        lessons: vec![0; learners],
+        rows_stride: 1,
+        rows: vec![0; learners],
+    }
 }
 
 /// Moves all learners on until they hold at `stop`, showing where they stand after every stretch.

@@ -4,7 +4,7 @@ use super::family::group_of;
 use super::group::{Group, LearnerId};
 use super::result::LearnerResult;
 use super::train::unpack;
-use crate::config::plan::{Child, Plan};
+use crate::config::plan::Plan;
 use crate::evaluate::{STATE_ACHIEVED, STATE_RUNNING, evaluate};
 use crate::learner::layout::{Dispatch, Episode};
 use crate::record::{Trajectory, TrajectoryPoint};
@@ -29,10 +29,6 @@ pub fn trajectories(plan: &Plan, groups: &[Group], learners: &BTreeMap<LearnerId
         let (mut settings, ..) = group.shape.learner(own, plan.run_seed, result.id.seed);
         settings[root].threshold.copy_from_slice(&result.thresholds);
         let skill = &own.skills[root];
-        let name = |child: &Child| match child {
-            Child::Action(action) => action.name().to_owned(),
-            Child::Skill(below) => own.skills[*below].name.clone(),
-        };
         for (number, (place_name, pose)) in plan.world_of(own).places.iter().enumerate() {
             let mut episode = Episode { state: STATE_RUNNING, ..Episode::zeroed() };
             place(&mut episode.agent, &group.shared, *pose);
@@ -49,7 +45,7 @@ pub fn trajectories(plan: &Plan, groups: &[Group], learners: &BTreeMap<LearnerId
                 skill: skill.name.clone(),
                 place: place_name.clone(),
                 world: plan.worlds[own.world].file.clone(),
-                children: skill.children.iter().map(name).collect(),
+                children: skill.children.iter().map(|child| own.name_of(*child).to_owned()).collect(),
                 achieved: episode.state == STATE_ACHIEVED,
                 points,
             });

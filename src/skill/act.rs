@@ -18,31 +18,19 @@ use crate::skill::persist::{IDLE, commit, extend, options, rest};
 use crate::skill::remember::remember;
 use crate::skill::reward::{beside, passed_door, reward_of, room_of};
 use crate::world::Pose;
+use bytemuck::Zeroable;
 
 /// Puts the robot at the start of a trial.
 #[inline(always)]
 pub fn place(agent: &mut Agent, shared: &Shared, pose: Pose) {
+    *agent = Agent::zeroed();
     agent.x = pose.x;
     agent.y = pose.y;
     agent.heading = pose.heading;
-    agent.bumpers = 0;
-    agent.step = 0;
     agent.origin = room_of(&shared.floor.plan, pose.x, pose.y);
     agent.blocked = NO_ACTION;
-    agent.masks = 0;
     agent.action = NO_ACTION;
-    agent.events = 0;
-    agent.earned = 0.0;
-    agent.reward = 0.0;
-    agent.returned = 0.0;
     agent.discount = 1.0;
-    agent.collisions = 0;
-    agent.east_west = 0.0;
-    agent.north_south = 0.0;
-    agent.light = 0.0;
-    agent.door = 0.0;
-    agent.door_cosine = 0.0;
-    agent.door_sine = 0.0;
     for n in 0..MAX_SKILLS {
         agent.run[n] = IDLE;
     }

@@ -3,7 +3,7 @@
 //! The grid is 5 in x 5 in x 15 degrees. Actuator noise enters by a three-point quadrature; between grid
 //! poses values are interpolated, over the poses that a robot can take.
 
-use crate::config::plan::{Action, Child, Event, Noise, NoiseKind, Robot, Skill};
+use crate::config::plan::{Action, Event, Noise, NoiseKind, Robot, Skill};
 use crate::learner::layout::{RAYS, RECORD_WORDS};
 use crate::learner::memory::Shared;
 use crate::math::functions::sin_cos;
@@ -92,7 +92,7 @@ impl Planner {
             rows,
             free,
             values: Vec::new(),
-            children: actions_of(skill),
+            children: skill.actions(),
             reward: skill.reward,
             ends: skill.ends,
             beside: pays_beside(skill).then_some((robot.beside_near as u32, robot.beside_far as u32)),
@@ -354,16 +354,6 @@ fn slips(noise: &Noise) -> [(f32, f32); 3] {
     };
     let reach = noise.actuator * far;
     [(1.0 - reach, weight), (1.0, 1.0 - 2.0 * weight), (1.0 + reach, weight)]
-}
-
-/// The actions that a skill chooses among, or all where it chooses among skills.
-fn actions_of(skill: &Skill) -> Vec<Action> {
-    let action = |child: &Child| match child {
-        Child::Action(action) => Some(*action),
-        Child::Skill(_) => None,
-    };
-    let actions: Vec<Action> = skill.children.iter().filter_map(action).collect();
-    if skill.is_high() { Action::ALL.to_vec() } else { actions }
 }
 
 fn pays_beside(skill: &Skill) -> bool {

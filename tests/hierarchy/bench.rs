@@ -1,5 +1,10 @@
 //! What these tests share: small configs, one learner's memory without a backend, and nets in f64.
 
+#[path = "../support/made_up.rs"]
+mod observations;
+
+pub(crate) use observations::made_up;
+
 use skilltree::config::plan::{Child, Input, Plan, Skill, Threshold};
 use skilltree::config::{Overrides, load};
 use skilltree::learner::build::Shape;
@@ -111,17 +116,6 @@ pub(crate) fn scratch_of(words: &[u32]) -> Scratch {
     let mut record = [0; RECORD_WORDS];
     record[..words.len()].copy_from_slice(words);
     Scratch { record, ..Scratch::default() }
-}
-
-/// Senses of a made-up observation: the first words of a record.
-pub(crate) fn made_up(next: &mut impl FnMut() -> f64) -> [u32; BASE_WORDS] {
-    let mut record = [0; BASE_WORDS];
-    for ray in 0..24 {
-        record[ray / 4] |= ((next() * 128.0) as u32) << (8 * (ray % 4));
-    }
-    record[6] = (next() * 268_435_456.0) as u32;
-    record[7] = ((next() * 360.0) as f32).to_bits();
-    record
 }
 
 /// The 24 readings of a record.

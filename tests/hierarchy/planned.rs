@@ -6,12 +6,12 @@ use glam::Vec2;
 use skilltree::backend::cpu::CpuBackend;
 use skilltree::backend::{Backend, Test};
 use skilltree::config::plan::{Plan, Skill};
-use skilltree::experiment::group::{Group, groups};
+use skilltree::experiment::group::{Group, groups, terms_of};
 use skilltree::learner::layout::{Agent, Episode};
 use skilltree::learner::memory::Scratch;
 use skilltree::skill::act::place;
 use skilltree::skill::consult::consult;
-use skilltree::teacher::planner::{PITCH, Planner, Terms};
+use skilltree::teacher::planner::Planner;
 use skilltree::world::Pose;
 
 /// The tree with all four skills planned; children in no tidy order.
@@ -31,16 +31,7 @@ fn planned() -> (Plan, Group) {
 }
 
 fn planner(plan: &Plan, group: &Group, skill: &Skill) -> Planner {
-    let arm = &plan.arms[0];
-    let terms = Terms {
-        noise: arm.noise,
-        robot: arm.robot,
-        discount: plan.teacher.discount,
-        backward_cost: plan.teacher.backward_cost,
-        collision_cost: plan.teacher.collision_cost,
-        pitch: PITCH,
-    };
-    Planner::new(plan.world(), &group.shared, skill, &terms)
+    Planner::new(plan.world(), &group.shared, skill, &terms_of(plan, &plan.arms[0]))
 }
 
 /// Values of all children at a pose of a trial that began in room `origin`.
