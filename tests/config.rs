@@ -58,7 +58,7 @@ fn docking_is_as_published() {
     }
     let learning = |i: usize| &plan.arms[i].skills[0].learning;
     let (adam, sgd, td0) = (learning(0), learning(1), learning(2));
-    assert_eq!(adam.optimiser, Optimiser::Adam { rate: 0.0015, beta1: 0.9, beta2: 0.999, epsilon: 1e-3 });
+    assert_eq!(adam.optimiser, Optimiser::Adam { rows: false, rate: 0.0015, beta1: 0.9, beta2: 0.999, epsilon: 1e-3 });
     assert_eq!((adam.hidden, adam.init, adam.gamma, adam.lambda), (32, 0.2, 0.9, 0.95));
     assert_eq!((adam.replays, adam.memory, adam.mean_age, adam.policy_threshold), (60, 300, 100.0, 0.05));
     assert_eq!((adam.rate_end_share, adam.rate_trials, sgd.rate_end_share), (0.1, 300, 1.0));

@@ -307,10 +307,10 @@ fn momentum_carries_the_last_change_on() {
     encode(&bench.shared, &mut scratch, &skill, false);
     forward(&bench.nets, &mut scratch, &skill, 0);
     let start = Net::of(&bench, 2);
-    backward(&mut bench.nets, &scratch, &skill, &bench.settings[0], 0, 2, 0.5, bench.settings[0].rate);
+    backward(&mut bench.nets, &mut scratch, &skill, &bench.settings[0], 0, 2, 0.5, bench.settings[0].rate);
     let one = Net::of(&bench, 2);
     // Nothing new to learn: only the momentum moves the weights, half as far.
-    backward(&mut bench.nets, &scratch, &skill, &bench.settings[0], 0, 2, 0.0, bench.settings[0].rate);
+    backward(&mut bench.nets, &mut scratch, &skill, &bench.settings[0], 0, 2, 0.0, bench.settings[0].rate);
     let two = Net::of(&bench, 2);
     let moved = |a: &Net, b: &Net| a.0.iter().zip(&b.0).map(|(a, b)| b - a).collect::<Vec<f64>>();
     let first = moved(&start, &one);
@@ -322,14 +322,22 @@ fn momentum_carries_the_last_change_on() {
 
 #[test]
 fn adam_follows_the_papers_formula() {
-    adam_follows_the_formula("1e-8", "0.0015");
+    adam_follows_the_formula("adam", "1e-8", "0.0015");
     // An epsilon as large as the gradients: a higher rate keeps the changes above the weights' last places.
-    adam_follows_the_formula("1e-3", "0.05");
+    adam_follows_the_formula("adam", "1e-3", "0.05");
 }
 
-fn adam_follows_the_formula(epsilon: &str, rate: &str) {
+/// The same with the mean of the squared gradient over the weights of one input, as Adam-mini has it over its blocks.
+#[test]
+fn adam_of_rows_follows_the_formula_with_the_mean_square_of_each_row() {
+    adam_follows_the_formula("adam-rows", "1e-8", "0.0015");
+    adam_follows_the_formula("adam-rows", "1e-3", "0.05");
+}
+
+fn adam_follows_the_formula(optimiser: &str, epsilon: &str, rate: &str) {
+    let of_optimiser = format!("learning.optimiser={optimiser}");
     let (of_epsilon, of_rate) = (format!("learning.epsilon={epsilon}"), format!("learning.rate={rate}"));
-    let mut bench = Bench::new(&["learning.optimiser=\"adam\"", "learning.init=0.3", &of_epsilon, &of_rate]);
+    let mut bench = Bench::new(&[&of_optimiser, "learning.init=0.3", &of_epsilon, &of_rate]);
     let (epsilon, given): (f32, f32) = (epsilon.parse().expect("a number"), rate.parse().expect("a number"));
     let settings = bench.settings[0];
     let (rate, beta1, beta2) = (f64::from(settings.rate), f64::from(settings.beta1), f64::from(settings.beta2));
@@ -353,7 +361,13 @@ fn adam_follows_the_formula(epsilon: &str, rate: &str) {
         let corrected = rate * (1.0 - beta2.powi(t)).sqrt() / (1.0 - beta1.powi(t));
         for (i, slope) in slopes.iter().enumerate() {
             mean[i] = beta1 * mean[i] + (1.0 - beta1) * slope;
-            square[i] = beta2 * square[i] + (1.0 - beta2) * slope * slope;
+            let row = &slopes[i / LANES * LANES..slopes.len().min((i / LANES + 1) * LANES)];
+            // The last row has a single weight, the output's bias.
+            let weights = if i / LANES + 1 == bench.rows_of_net() { 1 } else { LANES };
+            let own = slope * slope;
+            let of_row = row.iter().map(|slope| slope * slope).sum::<f64>() / weights as f64;
+            let squared = if optimiser == "adam" { own } else { of_row };
+            square[i] = beta2 * square[i] + (1.0 - beta2) * squared;
             net.0[i] -= corrected * mean[i] / (square[i] + epsilon2).sqrt();
         }
         let moved = |to: &Net| to.0.iter().zip(&start.0).map(|(to, from)| to - from).collect::<Vec<f64>>();

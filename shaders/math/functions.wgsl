@@ -8,11 +8,15 @@ fn flush(x: f32) -> f32 {
     return select(x, 0.0f, abs(x) < TINY);
 }
 
+fn whole(x: f32) -> i32 {
+    return i32(x);
+}
+
 fn exponential(x: f32) -> f32 {
     let held = select(-60.0f, x, x > -60.0f);
     let bounded = select(60.0f, held, held < 60.0f);
     // Adding 128.5 makes the conversion, which cuts towards zero, round to nearest.
-    let n = i32(bounded * 1.442695f + 128.5f) - 128;
+    let n = whole(bounded * 1.442695f + 128.5f) - 128;
     let k = f32(n);
     let r = (bounded - k * 0.6933594f) - k * -0.00021219444f;
     let z = r * r;

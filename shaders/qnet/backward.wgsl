@@ -1,6 +1,16 @@
 // One step of error back-propagation through one child's net (paper, section I, step 2).
 
+const OPTIMISER_SGD: u32 = 0u;
+const OPTIMISER_ADAM: u32 = 1u;
+const OPTIMISER_ADAM_ROWS: u32 = 2u;
+const LANE_SHARE: f32 = 0.03125f;
+
 const CLOCK_SECOND: u32 = 16u;
+
+// What the gradient of each row of weights has in factor.
+var<workgroup> row_factor: array<f32, MAX_ROWS>;
+// How far each row of weights moves along its mean gradient.
+var<workgroup> row_pace: array<f32, MAX_ROWS>;
 
 struct Errors {
     output: f32,
@@ -32,6 +42,43 @@ fn gradient(lane: u32, skill: u32, number: u32, output: u32, row: u32, errors: E
     return slope;
 }
 
+fn paces(
+    lane: u32,
+    skill: u32,
+    s: u32,
+    net: u32,
+    number: u32,
+    output: u32,
+    errors: Errors,
+    rate: f32,
+) {
+    workgroupBarrier();
+    let own_activation = hidden[number][lane];
+    partials[0][lane] = errors.hidden * errors.hidden;
+    partials[1][lane] = own_activation * own_activation;
+    lanes_sums(lane, 2u);
+    let hidden_share = partials[0][0] * LANE_SHARE;
+    let activation = partials[1][0] * LANE_SHARE;
+    let count = skills[skill].inputs;
+    let last = count + 1u + skills[skill].outputs;
+    let rest2 = 1.0f - settings[s].beta2;
+    let squares = net + 2u * skills[skill].rows * LANES;
+    for (var block = 0u; block < MAX_ROWS; block += LANES) {
+        let row = block + lane;
+        let x = select(1.0f, inputs[min(row, MAX_INPUTS - 1u)], row < count);
+        let own = row == count + 1u + output || row == last;
+        let out = select(0.0f, errors.output, own);
+        let factor = select(out, x, row <= count);
+        let above = select(1.0f, activation, row < last);
+        let alike = select(above, hidden_share, row <= count);
+        let square = flush(settings[s].beta2 * nets[squares + row] + rest2 * (factor * factor * alike));
+        nets[squares + row] = square;
+        row_factor[row] = factor;
+        row_pace[row] = rate * reciprocal_sqrt(square + settings[s].epsilon2);
+    }
+    workgroupBarrier();
+}
+
 fn learning_rate(s: u32, trial: u32) -> f32 {
     let risen = select(settings[s].rate_trials, trial, trial < settings[s].rate_trials);
     return settings[s].rate * (1.0f - settings[s].rate_fall * f32(risen));
@@ -47,9 +94,17 @@ fn backward(lane: u32, skill: u32, s: u32, base: u32, child: u32, delta: f32, pa
     let beta2 = settings[s].beta2;
     let epsilon2 = settings[s].epsilon2;
     let found = errors(lane, skill, net, number, child, delta);
-    if settings[s].optimiser == 1u {
-        // Adam (Kingma and Ba, 2015) in its second form, with epsilon under the root: one reciprocal root
-        // serves where a root and a division would.
+    if settings[s].optimiser == OPTIMISER_SGD {
+        for (var row = 0u; row < rows; row++) {
+            let at = net + row * LANES + lane;
+            let g = gradient(lane, skill, number, output, row, found);
+            let velocity = flush(beta1 * nets[at + slab] + pace * g);
+            nets[at + slab] = velocity;
+            nets[at] = nets[at] + velocity;
+        }
+    } else {
+        // Adam (Kingma and Ba, 2015) in its second form, with epsilon under the root: one reciprocal root serves
+        // where a root and a division would.
         let clock = base + skills[skill].clock_offset + number;
         let first = flush(nets[clock] * beta1);
         let second = flush(nets[clock + CLOCK_SECOND] * beta2);
@@ -61,23 +116,30 @@ fn backward(lane: u32, skill: u32, s: u32, base: u32, child: u32, delta: f32, pa
             nets[clock + CLOCK_SECOND] = second;
         }
         let rest1 = 1.0f - beta1;
-        let rest2 = 1.0f - beta2;
-        for (var row = 0u; row < rows; row++) {
-            let at = net + row * LANES + lane;
-            let g = gradient(lane, skill, number, output, row, found);
-            let mean = flush(beta1 * nets[at + slab] + rest1 * g);
-            let square = flush(beta2 * nets[at + 2u * slab] + rest2 * (g * g));
-            nets[at + slab] = mean;
-            nets[at + 2u * slab] = square;
-            nets[at] = nets[at] + rate * mean * reciprocal_sqrt(square + epsilon2);
-        }
-    } else {
-        for (var row = 0u; row < rows; row++) {
-            let at = net + row * LANES + lane;
-            let g = gradient(lane, skill, number, output, row, found);
-            let velocity = flush(beta1 * nets[at + slab] + pace * g);
-            nets[at + slab] = velocity;
-            nets[at] = nets[at] + velocity;
+        if settings[s].optimiser == OPTIMISER_ADAM_ROWS {
+            paces(lane, skill, s, net, number, output, found, rate);
+            let count = skills[skill].inputs;
+            let chosen = select(0.0f, 1.0f, lane == output);
+            for (var row = 0u; row < rows; row++) {
+                let at = net + row * LANES + lane;
+                let above = select(chosen, hidden[number][lane], row + 1u < rows);
+                let alike = select(above, found.hidden, row <= count);
+                let factor = rest1 * row_factor[row];
+                let mean = flush(beta1 * nets[at + slab] + factor * alike);
+                nets[at + slab] = mean;
+                nets[at] = nets[at] + row_pace[row] * mean;
+            }
+        } else {
+            let rest2 = 1.0f - beta2;
+            for (var row = 0u; row < rows; row++) {
+                let at = net + row * LANES + lane;
+                let g = gradient(lane, skill, number, output, row, found);
+                let mean = flush(beta1 * nets[at + slab] + rest1 * g);
+                let square = flush(beta2 * nets[at + 2u * slab] + rest2 * (g * g));
+                nets[at + slab] = mean;
+                nets[at + 2u * slab] = square;
+                nets[at] = nets[at] + rate * mean * reciprocal_sqrt(square + epsilon2);
+            }
         }
     }
     // The output bias and the clocks are read by other lanes than the one that wrote them.

@@ -74,7 +74,9 @@ fn options(n: u32, persist: bool) -> Options {
     let lost = settings[s].interrupt == 1u && (applicable & own) == 0u;
     let late = settings[s].decision_steps > 0u && since >= settings[s].decision_steps;
     let free = !persist || !skill || achieved || fresh || lost || late;
-    return Options(applicable, choices, select(own, choices, free), u32(free));
+    // What runs on is an alternative, even where it is no longer applicable: the step is learned with it.
+    let offered = select(choices | own, choices, free);
+    return Options(applicable, offered, select(own, choices, free), u32(free));
 }
 
 fn commit(n: u32, child: u32, options: Options) {

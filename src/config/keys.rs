@@ -177,7 +177,7 @@ keys! {
     INIT = "learning.init", Some("0.2"), Number(Bounds::above(0.0, 10.0)), Ours, "initial weights are uniform in plus or minus this";
     GAMMA = "learning.gamma", Some("0.9"), SHARE, Ours, "discount factor";
     LAMBDA = "learning.lambda", Some("0.95"), SHARE, Ours, "0 learns from the next value alone, 1 from the observed return";
-    OPTIMISER = "learning.optimiser", Some("'adam'"), Choice(&["adam", "sgd"]), Ours, "weight update rule";
+    OPTIMISER = "learning.optimiser", Some("'adam'"), Choice(&["adam", "sgd", "adam-rows"]), Ours, "weight update rule; adam-rows keeps one second moment for all weights of an input";
     RATE = "learning.rate", Some("0.0015"), Number(Bounds::above(0.0, 10.0)), Ours, "learning rate; the default is for adam, sgd has none";
     RATE_END_SHARE = "learning.rate_end_share", Some("0.1"), SHARE, Ours, "share of the rate that is left at the end of its schedule, 1 for a constant rate";
     RATE_TRIALS = "learning.rate_trials", Some("300"), Whole(1, MANY), Ours, "trials over which the rate falls linearly to that share";

@@ -39,7 +39,8 @@ impl Idle {
 /// Reads a complete `learning` table.
 pub(super) fn read(item: &Item<'_>, idle: &mut Idle) -> Result<Learning, ConfigError> {
     let section = Section(item.table()?);
-    let sgd = section.choice(&keys::OPTIMISER)? == 1;
+    let optimiser = section.choice(&keys::OPTIMISER)?;
+    let sgd = optimiser == 1;
     for (key, used) in [(keys::BETA1, !sgd), (keys::BETA2, !sgd), (keys::EPSILON, !sgd), (keys::MOMENTUM, sgd)] {
         // A key that repeats its default does no harm; a resolved config is full of them.
         let default = key.default.and_then(|text| text.parse().ok());
@@ -49,8 +50,8 @@ pub(super) fn read(item: &Item<'_>, idle: &mut Idle) -> Result<Learning, ConfigE
     let rate = section.number(&keys::RATE)?;
     let unset = section.0.optional(keys::RATE.name()).is_none_or(|item| item.origin().is_default());
     if sgd && unset {
-        let optimiser = section.required(&keys::OPTIMISER, "\"sgd\"")?;
-        return Err(optimiser.error("sgd has no default rate", "add `rate = 0.15` beside it"));
+        let chosen = section.required(&keys::OPTIMISER, "\"sgd\"")?;
+        return Err(chosen.error("sgd has no default rate", "add `rate = 0.15` beside it"));
     }
     let momentum = section.number(&keys::MOMENTUM)?;
     let (beta1, beta2) = (section.number(&keys::BETA1)?, section.number(&keys::BETA2)?);
@@ -63,7 +64,7 @@ pub(super) fn read(item: &Item<'_>, idle: &mut Idle) -> Result<Learning, ConfigE
         optimiser: if sgd {
             Optimiser::Sgd { rate, momentum }
         } else {
-            Optimiser::Adam { rate, beta1, beta2, epsilon }
+            Optimiser::Adam { rows: optimiser == 2, rate, beta1, beta2, epsilon }
         },
         rate_end_share: section.number(&keys::RATE_END_SHARE)?,
         rate_trials: section.whole(&keys::RATE_TRIALS)?,

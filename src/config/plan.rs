@@ -195,6 +195,8 @@ pub enum Optimiser {
     },
     /// Adam with bias correction.
     Adam {
+        /// Whether the weights of one input share one second moment (after Adam-mini) instead of having one each.
+        rows: bool,
         /// Learning rate.
         rate: f32,
         /// Decay of the mean gradient.

@@ -5,6 +5,7 @@ use super::layout::{
     RECORD_WORDS, ROW_WORDS, SKILL_CODE, SONAR_CODES, Settings, SkillPlan,
 };
 use crate::config::plan::{Arm, Child, Input, NoiseKind, Optimiser, Skill, Threshold};
+use crate::qnet::backward::{OPTIMISER_ADAM, OPTIMISER_ADAM_ROWS, OPTIMISER_SGD};
 use crate::qnet::init::init;
 use crate::skill::encode::{
     GROUP_APPLICABLE, GROUP_BUMPERS, GROUP_COMPASS, GROUP_COMPASS2, GROUP_DOOR_TRACE, GROUP_LIGHT, GROUP_LIGHT_TRACE,
@@ -228,8 +229,11 @@ fn settings_of(skill: &Skill, arm: &Arm, run_seed: u32, seed: u32) -> Settings {
         }
     }
     let (optimiser, rate, beta1, beta2, epsilon) = match learning.optimiser {
-        Optimiser::Sgd { rate, momentum } => (0, rate, momentum, 0.0, 1.0),
-        Optimiser::Adam { rate, beta1, beta2, epsilon } => (1, rate, beta1, beta2, epsilon),
+        Optimiser::Sgd { rate, momentum } => (OPTIMISER_SGD, rate, momentum, 0.0, 1.0),
+        Optimiser::Adam { rows: false, rate, beta1, beta2, epsilon } => (OPTIMISER_ADAM, rate, beta1, beta2, epsilon),
+        Optimiser::Adam { rows: true, rate, beta1, beta2, epsilon } => {
+            (OPTIMISER_ADAM_ROWS, rate, beta1, beta2, epsilon)
+        }
     };
     let rise = learning.inverse_temperature_end - learning.inverse_temperature_start;
     let mut reward = [0.0; EVENTS];

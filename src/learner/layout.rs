@@ -14,6 +14,8 @@ constants! {
     MAX_CHILDREN = 8;
     /// Most inputs of a net.
     MAX_INPUTS = 64;
+    /// Most rows of weights of a net, in whole lane arrays: inputs, outputs and two of biases.
+    MAX_ROWS = 96;
     /// Most input groups of a skill.
     MAX_GROUPS = 12;
     /// Most segments of a world.
@@ -219,7 +221,7 @@ shared! {
         gamma: f32,
         /// Share of the observed return in the target.
         lambda: f32,
-        /// 0 gradient descent with momentum, 1 Adam.
+        /// 0 gradient descent with momentum, 1 Adam, 2 Adam with one second moment for each row of weights.
         optimiser: u32,
         /// Learning rate at the first trial.
         rate: f32,

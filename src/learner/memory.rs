@@ -1,7 +1,7 @@
 //! What the CPU twins work on: one learner's slices of the cohort's buffers, and the scratch memory that
 //! a workgroup has.
 
-use super::layout::{Cursor, LANES, MAX_CHILDREN, MAX_INPUTS, MAX_SKILLS, RECORD_WORDS, Settings, SkillPlan};
+use super::layout::{Cursor, LANES, MAX_CHILDREN, MAX_INPUTS, MAX_ROWS, MAX_SKILLS, RECORD_WORDS, Settings, SkillPlan};
 use crate::math::lanes::Lanes;
 use crate::robot::floor::Floor;
 
@@ -46,6 +46,10 @@ pub struct Scratch {
     pub hidden: [Lanes; MAX_CHILDREN],
     /// Q-value of every child.
     pub q: [f32; MAX_CHILDREN],
+    /// What the gradient of each row of weights has in common.
+    pub row_factor: [f32; MAX_ROWS],
+    /// How far each row of weights moves along its mean gradient.
+    pub row_pace: [f32; MAX_ROWS],
     /// Boltzmann weight of every child, 0 where it is not available.
     pub odds: [f32; MAX_CHILDREN],
     /// Greatest Q-value of each watched skill.
@@ -61,6 +65,8 @@ impl Default for Scratch {
             inputs: [0.0; MAX_INPUTS],
             hidden: [[0.0; LANES]; MAX_CHILDREN],
             q: [0.0; MAX_CHILDREN],
+            row_factor: [0.0; MAX_ROWS],
+            row_pace: [0.0; MAX_ROWS],
             odds: [0.0; MAX_CHILDREN],
             value: [0.0; MAX_SKILLS],
             kept: [0.0; MAX_SKILLS * MAX_CHILDREN],

@@ -86,8 +86,11 @@ pub fn begin_replay(learner: &mut Learner<'_>, lesson: u32, taught: u32, mirrore
 pub fn load_record(learner: &Learner<'_>, scratch: &mut Scratch, step: u32) {
     let words = learner.shared.skills[learner.cursor.skill as usize].record_words;
     let offset = LESSON_HEADER as u32 + step * words;
-    for word in 0..words {
-        scratch.record[word as usize] = lesson_word(learner, offset + word);
+    let at = (learner.cursor.replay_lesson + offset) as usize;
+    let source: &[u32] = if learner.cursor.replay_taught == 1 { &learner.shared.bank } else { learner.lessons };
+    let source = &source[at..at + words as usize];
+    for word in 0..words as usize {
+        scratch.record[word] = source[word];
     }
 }
 

@@ -12,13 +12,21 @@ pub fn flush(x: f32) -> f32 {
     if x.abs() < TINY { 0.0 } else { x }
 }
 
+/// Integer part of `x` between 1/2 and 2^23. By bits, because Rust's cast saturates, which keeps the CPU from using its
+/// lanes; on a GPU the cast does.
+#[inline(always)]
+pub fn whole(x: f32) -> i32 {
+    let bits = x.to_bits();
+    (((bits & 0x007f_ffff) | 0x0080_0000) >> (150 - (bits >> 23))) as i32
+}
+
 /// e to the power of `x`, with `x` held to [-60, 60]. Relative error below 1e-6.
 #[inline(always)]
 pub fn exponential(x: f32) -> f32 {
     let held = if x > -60.0 { x } else { -60.0 };
     let bounded = if held < 60.0 { held } else { 60.0 };
     // Adding 128.5 makes the conversion, which cuts towards zero, round to nearest.
-    let n = (bounded * 1.442_695_f32 + 128.5) as i32 - 128;
+    let n = whole(bounded * 1.442_695_f32 + 128.5) - 128;
     let k = n as f32;
     let r = (bounded - k * 0.693_359_4_f32) - k * -0.000_212_194_44_f32;
     let z = r * r;
@@ -127,6 +135,18 @@ mod tests {
 
     fn sweep(from: f64, to: f64, n: u32) -> impl Iterator<Item = f32> {
         (0..=n).map(move |i| (from + (to - from) * f64::from(i) / f64::from(n)) as f32)
+    }
+
+    #[test]
+    fn whole_cuts_as_a_cast_does() {
+        let mut x = 0.5_f32;
+        while x < 8.0e6 {
+            assert_eq!(whole(x), x as i32, "{x}");
+            x = x * 1.000_13 + 0.000_7;
+        }
+        for edge in [0.5, 0.999_999_94, 1.0, 1.999_999_9, 2.0, 215.999_98, 216.0, 8_388_607.5] {
+            assert_eq!(whole(edge), edge as i32, "{edge}");
+        }
     }
 
     #[test]

@@ -1,10 +1,19 @@
 //! One step of error back-propagation through one child's net (paper, section I, step 2).
 
 use super::forward::net_of;
-use crate::learner::layout::{LANES, Settings, SkillPlan};
+use crate::learner::layout::{LANES, MAX_CHILDREN, MAX_INPUTS, MAX_ROWS, Settings, SkillPlan};
 use crate::learner::memory::Scratch;
 use crate::math::functions::{flush, reciprocal, reciprocal_sqrt, square_root};
-use crate::math::lanes::Lanes;
+use crate::math::lanes::{Lanes, lanes_sums};
+
+/// Gradient descent with momentum.
+pub const OPTIMISER_SGD: u32 = 0;
+/// Adam.
+pub const OPTIMISER_ADAM: u32 = 1;
+/// Adam with one second moment for each row of weights.
+pub const OPTIMISER_ADAM_ROWS: u32 = 2;
+/// 1 / `LANES`.
+const LANE_SHARE: f32 = 0.031_25;
 
 /// Lane of the clock row at which the second moments' decay stands; the first moments' stand from lane 0.
 pub const CLOCK_SECOND: u32 = 16;
@@ -66,6 +75,53 @@ pub fn gradient(scratch: &Scratch, plan: &SkillPlan, number: u32, output: u32, r
     slope
 }
 
+/// Finds, for each row of weights of the net at word `net`, the factor that its gradient has in common and the pace at
+/// which it moves along its mean gradient; lanes are rows.
+///
+/// Adam-mini (Zhang and others, 2024) keeps one second moment for a block of weights. Ours takes a row, the weights of
+/// one input, as the block: its gradient is the factor times the errors of the hidden units, so that the mean of its
+/// square needs no pass over the weights.
+#[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "the twin of a shader function, which has no methods")]
+pub fn paces(
+    nets: &mut [f32],
+    scratch: &mut Scratch,
+    plan: &SkillPlan,
+    settings: &Settings,
+    net: u32,
+    (number, output): (u32, u32),
+    errors: &Errors,
+    rate: f32,
+) {
+    let mut partials = [[0.0; LANES]; MAX_CHILDREN];
+    for lane in 0..LANES {
+        let activation = scratch.hidden[number as usize][lane];
+        partials[0][lane] = errors.hidden[lane] * errors.hidden[lane];
+        partials[1][lane] = activation * activation;
+    }
+    lanes_sums(&mut partials, 2);
+    let hidden = partials[0][0] * LANE_SHARE;
+    let activation = partials[1][0] * LANE_SHARE;
+    let count = plan.inputs as usize;
+    let last = count + 1 + plan.outputs as usize;
+    let rest2 = 1.0 - settings.beta2;
+    let mut inputs = [0.0; MAX_ROWS];
+    inputs[..MAX_INPUTS].copy_from_slice(&scratch.inputs);
+    let squares = &mut nets[(net + 2 * plan.rows * LANES as u32) as usize..][..MAX_ROWS];
+    for row in 0..MAX_ROWS {
+        let x = if row < count { inputs[row] } else { 1.0 };
+        let own = row == count + 1 + output as usize || row == last;
+        let out = if own { errors.output } else { 0.0 };
+        let factor = if row <= count { x } else { out };
+        let above = if row < last { activation } else { 1.0 };
+        let alike = if row <= count { hidden } else { above };
+        let square = flush(settings.beta2 * squares[row] + rest2 * (factor * factor * alike));
+        squares[row] = square;
+        scratch.row_factor[row] = factor;
+        scratch.row_pace[row] = rate * reciprocal_sqrt(square + settings.epsilon2);
+    }
+}
+
 /// Learning rate of a trial: it falls linearly over the first trials.
 #[inline(always)]
 pub fn learning_rate(settings: &Settings, trial: u32) -> f32 {
@@ -78,7 +134,7 @@ pub fn learning_rate(settings: &Settings, trial: u32) -> f32 {
 #[expect(clippy::too_many_arguments, reason = "the twin of a shader function, which has no methods")]
 pub fn backward(
     nets: &mut [f32],
-    scratch: &Scratch,
+    scratch: &mut Scratch,
     skill: &SkillPlan,
     settings: &Settings,
     base: u32,
@@ -95,34 +151,7 @@ pub fn backward(
     let beta2 = settings.beta2;
     let epsilon2 = settings.epsilon2;
     let found = errors(nets, scratch, skill, net, number, child, delta);
-    if settings.optimiser == 1 {
-        // Adam (Kingma and Ba, 2015) in its second form, with epsilon under the root: one reciprocal root
-        // serves where a root and a division would.
-        let clock = (base + skill.clock_offset + number) as usize;
-        let first = flush(nets[clock] * beta1);
-        let second = flush(nets[clock + CLOCK_SECOND as usize] * beta2);
-        let rate = pace * square_root(1.0 - second) * reciprocal(1.0 - first);
-        nets[clock] = first;
-        nets[clock + CLOCK_SECOND as usize] = second;
-        let rest1 = 1.0 - beta1;
-        let rest2 = 1.0 - beta2;
-        let (weights, moments) = nets[net as usize..(net + 3 * slab) as usize].split_at_mut(slab as usize);
-        let (means, squares) = moments.split_at_mut(slab as usize);
-        let weights = weights.as_chunks_mut::<LANES>().0;
-        let means = means.as_chunks_mut::<LANES>().0;
-        let squares = squares.as_chunks_mut::<LANES>().0;
-        for row in 0..rows as usize {
-            let slope = gradient(scratch, skill, number, output, row as u32, &found);
-            for lane in 0..LANES {
-                let g = slope[lane];
-                let mean = flush(beta1 * means[row][lane] + rest1 * g);
-                let square = flush(beta2 * squares[row][lane] + rest2 * (g * g));
-                means[row][lane] = mean;
-                squares[row][lane] = square;
-                weights[row][lane] += rate * mean * reciprocal_sqrt(square + epsilon2);
-            }
-        }
-    } else {
+    if settings.optimiser == OPTIMISER_SGD {
         let (weights, velocities) = nets[net as usize..(net + 2 * slab) as usize].split_at_mut(slab as usize);
         let weights = weights.as_chunks_mut::<LANES>().0;
         let velocities = velocities.as_chunks_mut::<LANES>().0;
@@ -133,6 +162,54 @@ pub fn backward(
                 let velocity = flush(beta1 * velocities[row][lane] + pace * g);
                 velocities[row][lane] = velocity;
                 weights[row][lane] += velocity;
+            }
+        }
+    } else {
+        // Adam (Kingma and Ba, 2015) in its second form, with epsilon under the root: one reciprocal root serves where a
+        // root and a division would.
+        let clock = (base + skill.clock_offset + number) as usize;
+        let first = flush(nets[clock] * beta1);
+        let second = flush(nets[clock + CLOCK_SECOND as usize] * beta2);
+        let rate = pace * square_root(1.0 - second) * reciprocal(1.0 - first);
+        nets[clock] = first;
+        nets[clock + CLOCK_SECOND as usize] = second;
+        let rest1 = 1.0 - beta1;
+        if settings.optimiser == OPTIMISER_ADAM_ROWS {
+            paces(nets, scratch, skill, settings, net, (number, output), &found, rate);
+            let count = skill.inputs as usize;
+            let (weights, means) = nets[net as usize..(net + 2 * slab) as usize].split_at_mut(slab as usize);
+            let weights = weights.as_chunks_mut::<LANES>().0;
+            let means = means.as_chunks_mut::<LANES>().0;
+            let mut chosen = [0.0; LANES];
+            chosen[output as usize] = 1.0;
+            for row in 0..rows as usize {
+                let above = if row + 1 < rows as usize { &scratch.hidden[number as usize] } else { &chosen };
+                let alike = if row <= count { &found.hidden } else { above };
+                let factor = rest1 * scratch.row_factor[row];
+                let step = scratch.row_pace[row];
+                for lane in 0..LANES {
+                    let mean = flush(beta1 * means[row][lane] + factor * alike[lane]);
+                    means[row][lane] = mean;
+                    weights[row][lane] += step * mean;
+                }
+            }
+        } else {
+            let rest2 = 1.0 - beta2;
+            let (weights, moments) = nets[net as usize..(net + 3 * slab) as usize].split_at_mut(slab as usize);
+            let (means, squares) = moments.split_at_mut(slab as usize);
+            let weights = weights.as_chunks_mut::<LANES>().0;
+            let means = means.as_chunks_mut::<LANES>().0;
+            let squares = squares.as_chunks_mut::<LANES>().0;
+            for row in 0..rows as usize {
+                let slope = gradient(scratch, skill, number, output, row as u32, &found);
+                for lane in 0..LANES {
+                    let g = slope[lane];
+                    let mean = flush(beta1 * means[row][lane] + rest1 * g);
+                    let square = flush(beta2 * squares[row][lane] + rest2 * (g * g));
+                    means[row][lane] = mean;
+                    squares[row][lane] = square;
+                    weights[row][lane] += rate * mean * reciprocal_sqrt(square + epsilon2);
+                }
             }
         }
     }

@@ -18,7 +18,7 @@ pub const ALWAYS: f32 = -2.0;
 pub struct Options {
     /// Applicable children.
     pub applicable: u32,
-    /// What a free choice is made among.
+    /// What a free choice is made among; where the running child may not be left, that child as well.
     pub choices: u32,
     /// What may be chosen now.
     pub allowed: u32,
@@ -86,7 +86,9 @@ pub fn options(
     let lost = settings.interrupt == 1 && (applicable & own) == 0;
     let late = settings.decision_steps > 0 && since >= settings.decision_steps;
     let free = !persist || !skill || achieved || fresh || lost || late;
-    Options { applicable, choices, allowed: if free { choices } else { own }, decision: u32::from(free) }
+    // What runs on is an alternative, even where it is no longer applicable: the step is learned with it.
+    let offered = if free { choices } else { choices | own };
+    Options { applicable, choices: offered, allowed: if free { choices } else { own }, decision: u32::from(free) }
 }
 
 /// Notes that skill `n` has chosen `child`.

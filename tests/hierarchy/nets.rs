@@ -79,13 +79,13 @@ fn one_step_descends_the_gradient_of_one_output() {
         let (mut bench, root) = shared_net(&["learning.optimiser=sgd", "learning.rate=0.5"]);
         bench.settings[root].beta1 = 0.0;
         let skill = bench.shared.skills[root];
-        let (scratch, x) = look(&bench, root, &mut next);
+        let (mut scratch, x) = look(&bench, root, &mut next);
         let net = Nets64::of(&bench.nets, &skill);
         let slopes = differences(&net, &x, child, goal);
         let delta = goal as f32 - scratch.q[child];
         // A large rate, because the change of a weight is exact only next to what it is added to.
         let before = bench.nets.clone();
-        backward(&mut bench.nets, &scratch, &skill, &bench.settings[root], 0, child as u32, delta, 256.0);
+        backward(&mut bench.nets, &mut scratch, &skill, &bench.settings[root], 0, child as u32, delta, 256.0);
         let after = Nets64::of(&bench.nets, &skill);
         for (row, (slopes, (now, then))) in
             slopes.chunks(LANES).zip(after.nets[0].chunks(LANES).zip(net.nets[0].chunks(LANES))).enumerate()
@@ -122,7 +122,7 @@ fn adam_of_a_shared_net_follows_the_papers_formula() {
     let words = net.nets[0].len();
     let (mut mean, mut square) = (vec![0.0; words], vec![0.0; words]);
     for (time, (child, goal)) in [(1, 0.8), (3, -0.6), (1, 0.1), (0, 0.9)].into_iter().enumerate() {
-        let (scratch, x) = look(&bench, root, &mut next);
+        let (mut scratch, x) = look(&bench, root, &mut next);
         let slopes = differences(&net, &x, child, goal);
         let t = time as i32 + 1;
         let corrected = rate * (1.0 - beta2.powi(t)).sqrt() / (1.0 - beta1.powi(t));
@@ -132,7 +132,7 @@ fn adam_of_a_shared_net_follows_the_papers_formula() {
             net.nets[0][i] -= corrected * mean[i] / (square[i] + epsilon * epsilon).sqrt();
         }
         let delta = goal as f32 - scratch.q[child];
-        backward(&mut bench.nets, &scratch, &skill, &bench.settings[root], 0, child as u32, delta, rate as f32);
+        backward(&mut bench.nets, &mut scratch, &skill, &bench.settings[root], 0, child as u32, delta, rate as f32);
         let found = Nets64::of(&bench.nets, &skill);
         for row in 0..34 {
             let range = row * LANES..(row + 1) * LANES;
