@@ -26,6 +26,8 @@ const TOLERANCE: f32 = 1.0e-5;
 const STUCK: f32 = 0.5;
 /// More sweeps than any discount below 1 needs for [`TOLERANCE`] in worlds of this size.
 const MOST_SWEEPS: usize = 2_000;
+/// Points of the quadrature over the slip of the actuators.
+const SLIPS: usize = 3;
 
 /// The solved task: how good every pose is, and what to do there.
 #[derive(Debug, Clone)]
@@ -44,7 +46,7 @@ pub struct Planner {
     discount: f32,
     backward_cost: f32,
     collision_cost: f32,
-    slips: [(f32, f32); 3],
+    slips: [(f32, f32); SLIPS],
 }
 
 /// What a planner plans with, besides the skill.
@@ -222,13 +224,20 @@ impl Planner {
                 blends
             })
             .collect();
+        // A turn keeps the point, and takes each heading to the same place between headings everywhere.
+        let turned: Vec<Between> = (0..HEADINGS)
+            .flat_map(|heading| turns.iter().map(move |action| (heading, action)))
+            .flat_map(|(heading, action)| {
+                self.slips.map(|(slip, _)| Between::headings(heading as f32 + action.turn() * slip / HEADING_STEP))
+            })
+            .collect();
         let scale = self.reward.iter().fold(0.0_f32, |most, amount| most.max(amount.abs())).max(1.0e-6);
         let mut values = vec![0.0; self.free.len() * HEADINGS];
         let mut fresh = vec![[0.0; HEADINGS]; points.len()];
         for _sweep in 0..MOST_SWEEPS {
             fresh.par_iter_mut().zip(&points).zip(&blends).for_each(|((fresh, point), blends)| {
                 for (heading, fresh) in fresh.iter_mut().enumerate() {
-                    *fresh = self.backup(&values, *point, heading, &moves, &turns, blends);
+                    *fresh = self.backup(&values, *point, heading, &moves, blends, &turned);
                 }
             });
             let mut change = 0.0_f32;
@@ -252,8 +261,8 @@ impl Planner {
         point: usize,
         heading: usize,
         moves: &[Action],
-        turns: &[Action],
         blends: &[Blend],
+        turned: &[Between],
     ) -> f32 {
         let mut best = f32::NEG_INFINITY;
         let per_heading = moves.len() * self.slips.len();
@@ -269,11 +278,12 @@ impl Planner {
             }
             best = best.max(worth);
         }
-        for action in turns {
+        let own = &values[point * HEADINGS..(point + 1) * HEADINGS];
+        let per_heading = turned.len() / HEADINGS;
+        for slipped in turned[heading * per_heading..(heading + 1) * per_heading].as_chunks::<SLIPS>().0 {
             let mut worth = 0.0;
-            for (slip, weight) in self.slips {
-                let turned = heading as f32 + action.turn() * slip / HEADING_STEP;
-                worth += weight * self.discount * along_heading(values, point, turned);
+            for (between, (_, weight)) in slipped.iter().zip(&self.slips) {
+                worth += weight * self.discount * between.of(own);
             }
             best = best.max(worth);
         }
@@ -320,10 +330,11 @@ impl Planner {
     }
 
     fn interpolate(&self, values: &[f32], pose: Pose) -> f32 {
+        let between = Between::headings(pose.heading / HEADING_STEP);
         self.corners(pose)
             .into_iter()
             .filter(|(_, share)| *share > 0.0)
-            .map(|(point, share)| share * along_heading(values, point, pose.heading / HEADING_STEP))
+            .map(|(point, share)| share * between.of(&values[point * HEADINGS..][..HEADINGS]))
             .sum()
     }
 }
@@ -336,18 +347,31 @@ struct Blend {
     reward: f32,
 }
 
-/// Value at a grid point between its headings; `turn` counts headings and may lie beyond them.
-fn along_heading(values: &[f32], point: usize, turn: f32) -> f32 {
-    let low = turn.floor();
-    let part = turn - low;
-    let first = (low as i32).rem_euclid(HEADINGS as i32) as usize;
-    let second = (first + 1) % HEADINGS;
-    let base = point * HEADINGS;
-    values[base + first] * (1.0 - part) + values[base + second] * part
+/// A place between two of a grid point's headings.
+#[derive(Debug, Clone, Copy)]
+struct Between {
+    first: usize,
+    second: usize,
+    /// Share of the second.
+    part: f32,
+}
+
+impl Between {
+    /// `turn` counts headings and may lie beyond them.
+    fn headings(turn: f32) -> Self {
+        let low = turn.floor();
+        let first = (low as i32).rem_euclid(HEADINGS as i32) as usize;
+        Self { first, second: (first + 1) % HEADINGS, part: turn - low }
+    }
+
+    /// The blend of the values of a point's headings.
+    fn of(self, values: &[f32]) -> f32 {
+        values[self.first] * (1.0 - self.part) + values[self.second] * self.part
+    }
 }
 
 /// Three-point quadrature of the actuators' slip: factors and weights.
-fn slips(noise: &Noise) -> [(f32, f32); 3] {
+fn slips(noise: &Noise) -> [(f32, f32); SLIPS] {
     let (far, weight) = match noise.kind {
         NoiseKind::Gaussian => (3.0_f32.sqrt(), 1.0 / 6.0),
         NoiseKind::Uniform => (0.6_f32.sqrt(), 5.0 / 18.0),
