@@ -400,7 +400,7 @@ fn exact(lambda: f32) -> Bench {
     let skill = bench.shared.skills[0];
     // A weight of 40 makes a hidden unit a copy of a bumper's bit.
     let copy = squash(40.0);
-    assert!(copy > 0.999_999_9 && squash(0.0) == 0.0 && squash(1.0e-17) == 0.0);
+    assert!(copy > 0.999_999 && squash(0.0) == 0.0);
     for (child, bumper, worth) in [(0, 0, 0.5), (1, 0, -0.5), (2, 1, 0.1875_f32)] {
         let near = worth.atanh();
         let candidates = (-200..200).map(|i| f32::from_bits(near.to_bits().wrapping_add_signed(i)));
@@ -451,7 +451,9 @@ fn expect(bench: &mut Bench, lesson: &Lesson, taught: u32, returns: [f32; 5], le
     bench.keep(lesson);
     let mut found = bench.replay(taught);
     found.reverse();
-    assert_eq!(found, returns, "{what}");
+    // A bias that has moved by `HARDLY` shows where a value is 0.
+    let near = |found: f32, exact: f32| if exact == 0.0 { found.abs() < 1.0e-17 } else { found == exact };
+    assert!(found.iter().zip(returns).all(|(found, exact)| near(*found, exact)), "{what}: {found:?}, not {returns:?}");
     // Q of the child of each step, in its state.
     let values = [0.0, 0.5, 0.0, 0.0, -0.5];
     for (step, value) in values.iter().enumerate() {
@@ -459,7 +461,7 @@ fn expect(bench: &mut Bench, lesson: &Lesson, taught: u32, returns: [f32; 5], le
         // The output bias is 0, its slope is the error times (1 - Q^2): exact.
         let error = (returns[step] - value) * (1.0 - value * value);
         let expected = if learned[step] { error } else { 0.0 };
-        assert_eq!(bench.bias(child) / HARDLY, expected, "{what}: step {step}");
+        assert!(near(bench.bias(child) / HARDLY, expected), "{what}: step {step}");
     }
     let learned = learned.iter().filter(|learned| **learned).count() as u32;
     assert_eq!((bench.bias(2), bench.cursor.updates), (0.0, learned), "{what}");

@@ -86,21 +86,23 @@ fn replay_step(lane: u32, s: u32, base: u32) {
     let skill = cursor.skill;
     let open = cursor.replay_open == 1u;
     let step = select(cursor.replay_left - 1u, cursor.replay_left, open);
-    load_record(lane, step);
-    let mirrored = cursor.replay_mirrored == 1u;
-    let done = record[8] & 0xffu;
-    let choices = (record[8] >> 16u) & 0xffu;
-    let offered = select((record[8] >> 8u) & 0xffu, choices, settings[s].backup == BACKUP_STEPS);
-    let allowed = reflected(skill, offered, mirrored);
-    let reward = bitcast<f32>(record[9]) * settings[s].value_scale;
+    let at = LESSON_HEADER + step * skills[skill].record_words;
+    let marks = lesson_word(at + 8u);
+    let reward = bitcast<f32>(lesson_word(at + 9u)) * settings[s].value_scale;
     let future = (1.0f - settings[s].lambda) * cursor.next_best + settings[s].lambda * cursor.next_return;
     let aim = bounded(reward + settings[s].gamma * future, settings[s].target_limit);
-    let inner = settings[s].backup == BACKUP_DECISIONS && (record[8] >> 31u) == 0u && !open;
+    let inner = settings[s].backup == BACKUP_DECISIONS && (marks >> 31u) == 0u && !open;
     if inner && !inner_drawn(s, step) {
         cursor.next_best = aim;
         cursor.next_return = aim;
         cursor.replay_left = step;
     } else {
+        let mirrored = cursor.replay_mirrored == 1u;
+        let done = marks & 0xffu;
+        let choices = (marks >> 16u) & 0xffu;
+        let offered = select((marks >> 8u) & 0xffu, choices, settings[s].backup == BACKUP_STEPS);
+        let allowed = reflected(skill, offered, mirrored);
+        load_record(lane, step);
         encode(lane, skill, mirrored);
         forward(lane, skill, base);
         let outlook = weigh(lane, skills[skill].children, allowed, sharpness(s, cursor.trial));

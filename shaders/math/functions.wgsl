@@ -73,10 +73,14 @@ fn is_number(x: f32) -> bool {
 }
 
 fn squash(x: f32) -> f32 {
-    let e = exponential(-2.0f * abs(x));
-    let y = (1.0f - e) * reciprocal(1.0f + e);
-    let signed = select(y, -y, x < 0.0f);
-    return select(x, signed, is_number(x));
+    // Beyond, tanh is 1 to f32's last place but one.
+    let held = select(-7.9f, x, x > -7.9f);
+    let b = select(7.9f, held, held < 7.9f);
+    let z = b * b;
+    let over = (((1.5259674e-8f * z + 2.1903414e-5f) * z + 0.0035716959f) * z + 0.13444452f) * z + 1.0f;
+    let under = (((8.5305453e-7f * z + 0.00034117428f) * z + 0.0261644125f) * z + 0.46777773f) * z + 1.0f;
+    let y = b * over * reciprocal(under);
+    return select(x, y, is_number(x));
 }
 
 // Sine, then cosine.

@@ -133,21 +133,23 @@ pub fn replay_step(learner: &mut Learner<'_>, scratch: &mut Scratch, base: u32) 
     let skill = &learner.shared.skills[learner.cursor.skill as usize];
     let open = learner.cursor.replay_open == 1;
     let step = if open { learner.cursor.replay_left } else { learner.cursor.replay_left - 1 };
-    load_record(learner, scratch, step);
-    let mirrored = learner.cursor.replay_mirrored == 1;
-    let done = scratch.record[8] & 0xff;
-    let choices = (scratch.record[8] >> 16) & 0xff;
-    let offered = if settings.backup == BACKUP_STEPS { choices } else { (scratch.record[8] >> 8) & 0xff };
-    let allowed = reflected(skill, offered, mirrored);
-    let reward = f32::from_bits(scratch.record[9]) * settings.value_scale;
+    let at = LESSON_HEADER as u32 + step * skill.record_words;
+    let marks = lesson_word(learner, at + 8);
+    let reward = f32::from_bits(lesson_word(learner, at + 9)) * settings.value_scale;
     let future = (1.0 - settings.lambda) * learner.cursor.next_best + settings.lambda * learner.cursor.next_return;
     let aim = bounded(reward + settings.gamma * future, settings.target_limit);
-    let inner = settings.backup == BACKUP_DECISIONS && (scratch.record[8] >> 31) == 0 && !open;
+    let inner = settings.backup == BACKUP_DECISIONS && (marks >> 31) == 0 && !open;
     if inner && !inner_drawn(learner, step) {
         learner.cursor.next_best = aim;
         learner.cursor.next_return = aim;
         learner.cursor.replay_left = step;
     } else {
+        let mirrored = learner.cursor.replay_mirrored == 1;
+        let done = marks & 0xff;
+        let choices = (marks >> 16) & 0xff;
+        let offered = if settings.backup == BACKUP_STEPS { choices } else { (marks >> 8) & 0xff };
+        let allowed = reflected(skill, offered, mirrored);
+        load_record(learner, scratch, step);
         encode(learner.shared, scratch, skill, mirrored);
         forward(learner.nets, scratch, skill, base);
         let outlook = weigh(scratch, skill.children, allowed, sharpness(settings, learner.cursor.trial));

@@ -92,14 +92,20 @@ pub fn is_number(x: f32) -> bool {
     (x.to_bits() & 0x7f80_0000) != 0x7f80_0000
 }
 
-/// The nets' symmetric sigmoid, tanh(`x`). Absolute error below 3e-7. What is no number is handed on, so that it is
-/// found out and not taken for 1.
+/// The nets' symmetric sigmoid, tanh(`x`), as a quotient of polynomials. Absolute error below 5e-7. What is no number
+/// is handed on, so that it is found out and not taken for 1.
 #[inline(always)]
 pub fn squash(x: f32) -> f32 {
-    let e = exponential(-2.0 * x.abs());
-    let y = (1.0 - e) * reciprocal(1.0 + e);
-    let signed = if x < 0.0 { -y } else { y };
-    if is_number(x) { signed } else { x }
+    // Beyond, tanh is 1 to f32's last place but one.
+    let held = if x > -7.9 { x } else { -7.9 };
+    let b = if held < 7.9 { held } else { 7.9 };
+    let z = b * b;
+    let over =
+        (((1.525_967_4e-8_f32 * z + 2.190_341_4e-5_f32) * z + 0.003_571_695_9_f32) * z + 0.134_444_52_f32) * z + 1.0;
+    let under =
+        (((8.530_545_3e-7_f32 * z + 0.000_341_174_28_f32) * z + 0.026_164_412_5_f32) * z + 0.467_777_73_f32) * z + 1.0;
+    let y = b * over * reciprocal(under);
+    if is_number(x) { y } else { x }
 }
 
 /// Sine and cosine of an angle in degrees, 0 to 720. Exact at multiples of 90.
@@ -182,7 +188,8 @@ mod tests {
     #[test]
     fn squash_matches_f64() {
         for x in sweep(-20.0, 20.0, 200_000) {
-            assert!((f64::from(squash(x)) - f64::from(x).tanh()).abs() < 3.0e-7, "tanh({x})");
+            assert!((f64::from(squash(x)) - f64::from(x).tanh()).abs() < 5.0e-7, "tanh({x})");
+            assert!(squash(x).abs() < 1.0 && squash(-x) == -squash(x));
         }
         assert_eq!(squash(0.0), 0.0);
         assert!(squash(f32::NAN).is_nan() && squash(f32::INFINITY) == f32::INFINITY && squash(f32::MAX) < 1.01);
