@@ -16,7 +16,8 @@ fn consult(lane: u32, n: u32) {
     let column = min(u32(agent.x * inverse + 0.5f), columns - 1u);
     let row = min(u32(agent.y * inverse + 0.5f), rows - 1u);
     let heading = u32(agent.heading * STEPS_PER_DEGREE + 0.5f) % TABLE_HEADINGS;
-    let origin = min(agent.origin, origins - 1u);
+    // Who began in no room has the first one's table, as with the planner.
+    let origin = select(0u, agent.origin, agent.origin < origins);
     let entry = ((origin * rows + row) * columns + column) * TABLE_HEADINGS + heading;
     let word = atlas[table + TABLE_HEADER + entry];
     let best = bitcast<f32>(word & 0xfffffff8u);

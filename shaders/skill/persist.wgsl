@@ -45,7 +45,8 @@ fn options(n: u32, persist: bool) -> Options {
     for (var child = 0u; child < skills[n].children; child++) {
         let code = skills[n].child[child];
         // A lone child is always available.
-        let free = code != agent.blocked || skills[n].children == 1u;
+        let masked = settings[s].mask_blocked == 1u && code == agent.blocked;
+        let free = !masked || skills[n].children == 1u;
         open |= select(0u, 1u << child, free);
         actions |= select(0u, 1u << child, code < SKILL_CODE);
     }

@@ -25,7 +25,8 @@ pub fn consult(agent: &Agent, shared: &Shared, scratch: &mut Scratch, plan: &Ski
     let column = ((agent.x * inverse + 0.5) as u32).min(columns - 1);
     let row = ((agent.y * inverse + 0.5) as u32).min(rows - 1);
     let heading = ((agent.heading * STEPS_PER_DEGREE + 0.5) as u32) % TABLE_HEADINGS;
-    let origin = agent.origin.min(origins - 1);
+    // Who began in no room has the first one's table, as with the planner.
+    let origin = if agent.origin < origins { agent.origin } else { 0 };
     let entry = ((origin * rows + row) * columns + column) * TABLE_HEADINGS + heading;
     let word = shared.atlas[table + (TABLE_HEADER + entry) as usize];
     let best = f32::from_bits(word & 0xffff_fff8);

@@ -47,7 +47,7 @@ pub fn extend(agent: &Agent, world: &WorldPlan, scratch: &mut Scratch, plan: &Sk
     recall(agent, scratch);
 }
 
-/// What skill `n` may choose. For a skill over actions that is every action but a blocked one.
+/// What skill `n` may choose. For a skill over actions that is every action, or every action but a blocked one.
 #[inline(always)]
 pub fn options(
     agent: &Agent,
@@ -64,7 +64,8 @@ pub fn options(
     for child in 0..plan.children {
         let code = plan.child[child as usize];
         // A lone child is always available.
-        let free = code != agent.blocked || plan.children == 1;
+        let masked = settings.mask_blocked == 1 && code == agent.blocked;
+        let free = !masked || plan.children == 1;
         open |= if free { 1 << child } else { 0 };
         actions |= if code < SKILL_CODE as u32 { 1 << child } else { 0 };
     }

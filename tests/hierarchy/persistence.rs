@@ -138,6 +138,8 @@ fn made_up(next: &mut impl FnMut() -> f64) -> (Chooser, Vec<SkillPlan>, Settings
     }
     skills[0].children = count as u32;
     settings.applicability = u32::from(rules.applicability);
+    // Another skill may have been blocked, which does not bind one that masks nothing.
+    settings.mask_blocked = u32::from(next() < 0.8);
     settings.interrupt = u32::from(rules.interrupt);
     settings.decision_steps = rules.patience.unwrap_or(0);
     (Chooser { choices, rules, running: None, before: Set::new() }, skills, settings)
@@ -171,7 +173,7 @@ fn allowed_sets_and_decisions_are_those_of_the_rules() {
             scratch.record[BASE_WORDS] = word | (next() * 256.0) as u32;
             let found = options(&agent, &scratch, &skills, &settings, 0, chooser.rules.persist);
 
-            let candidates = chooser.candidates(&own, blocked);
+            let candidates = chooser.candidates(&own, blocked.filter(|_| settings.mask_blocked == 1));
             let reasons = chooser.reasons(&own, &happened);
             let running = chooser.running.map(|(child, _)| child);
             let allowed = if reasons.is_empty() { running.into_iter().collect() } else { candidates.clone() };
