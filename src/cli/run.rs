@@ -35,6 +35,12 @@ pub(super) struct Arguments {
     /// Seeds, instead of the config's: `0..7` (7 left out), `5`, `1,2,5..9`.
     #[arg(long, value_name = "SEEDS")]
     seeds: Option<String>,
+    /// Runs this arm only; may be given several times.
+    #[arg(long, value_name = "ARM")]
+    arm: Vec<String>,
+    /// Runs this point of the sweep only, counted from 0 as in the tables; may be given several times.
+    #[arg(long, value_name = "N")]
+    point: Vec<u32>,
     /// Sets a key of the config, such as `learning.rate=0.01`; may be given several times.
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
@@ -49,7 +55,12 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let overrides = Overrides { set: arguments.set.clone(), seeds: arguments.seeds.clone() };
+    let overrides = Overrides {
+        set: arguments.set.clone(),
+        seeds: arguments.seeds.clone(),
+        arms: arguments.arm.clone(),
+        points: arguments.point.clone(),
+    };
     let plan = load(&arguments.config, &overrides)?;
     let out = arguments.out.clone().unwrap_or_else(|| Path::new("runs").join(&plan.name));
     let worlds: Vec<(&str, &str)> = plan.worlds.iter().map(|world| (&*world.file, &*world.text)).collect();

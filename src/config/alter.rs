@@ -11,10 +11,10 @@ use super::{keys, robot};
 use crate::world::World;
 
 /// Reads the table `alter`. Every arm's root must be able to do its test in each of its worlds.
-pub(super) fn read(
+pub(super) fn read<'a>(
     altered: &Node,
     base: &Node,
-    arms: &[Arm],
+    arms: impl Iterator<Item = &'a Arm> + Clone,
     worlds: &mut Worlds<'_>,
 ) -> Result<Vec<Alteration>, ConfigError> {
     let mut alterations = Vec::new();
@@ -34,7 +34,7 @@ pub(super) fn read(
         let noise = noise.map(|noise| laid_over(&noise, base)).transpose()?;
         let world = world.map(|world| worlds.place(&world)).transpose()?;
         let placed = |world: usize| &worlds.placed[world].world;
-        for arm in arms {
+        for arm in arms.clone() {
             let own = world.unwrap_or(arm.world);
             check_rooms(placed(own), placed(arm.world), place)?;
             check_root(placed(own), arm, place)?;

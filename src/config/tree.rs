@@ -9,6 +9,8 @@ use toml::de::{DeTable, DeValue};
 /// Tables that are replaced as a whole: shares of start regions sum to 1, and thresholds belong to the children that
 /// are named beside them.
 const WHOLE: [&str; 2] = ["starts", "applicable"];
+/// The table whose keys stand for those of the rest: there, each member of [`WHOLE`] tables is an axis of its own.
+pub(crate) const SWEEP: &str = "sweep";
 
 /// A text that values come from.
 #[derive(Debug)]
@@ -136,6 +138,14 @@ impl Node {
         }
     }
 
+    /// The value under a key, to be changed.
+    pub(crate) fn get_mut(&mut self, key: &str) -> Option<&mut Node> {
+        match &mut self.value {
+            Value::Table(entries) => entries.iter_mut().find(|entry| entry.key == key).map(|entry| &mut entry.node),
+            _ => None,
+        }
+    }
+
     /// Takes a key out of this table.
     pub(crate) fn remove(&mut self, key: &str) -> Option<Entry> {
         let Value::Table(entries) = &mut self.value else { return None };
@@ -154,15 +164,20 @@ impl Node {
 
     /// Lays `over` on top: tables are merged key by key, anything else is replaced, and [`WHOLE`] ones are too.
     pub(crate) fn merge(&mut self, over: Node) {
+        self.merge_but(over, &WHOLE);
+    }
+
+    fn merge_but(&mut self, over: Node, whole: &[&str]) {
         match (&mut self.value, over.value) {
             (Value::Table(below), Value::Table(above)) => {
                 // What somebody wrote is a better place for complaints than a default.
                 self.origin.replace_default(over.origin);
                 for entry in above {
                     match below.iter_mut().find(|old| old.key == entry.key) {
-                        Some(old) if !WHOLE.contains(&entry.key.as_str()) => {
+                        Some(old) if !whole.contains(&entry.key.as_str()) => {
                             old.origin.replace_default(entry.origin);
-                            old.node.merge(entry.node);
+                            let whole = if entry.key == SWEEP { &[] } else { whole };
+                            old.node.merge_but(entry.node, whole);
                         }
                         Some(old) => *old = entry,
                         None => below.push(entry),

@@ -6,6 +6,7 @@ use super::plan::PlacedWorld;
 use super::read::Item;
 use super::tree::{Node, Value};
 use crate::world;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// World files read so far.
@@ -13,6 +14,8 @@ use std::path::{Path, PathBuf};
 pub(super) struct Worlds<'a> {
     /// The config file, from whose folder paths start.
     config: &'a Path,
+    /// Index of the world that each of these texts names.
+    named: BTreeMap<String, usize>,
     /// Where each of them lies, without symbolic links and detours.
     paths: Vec<PathBuf>,
     /// The worlds, in the order in which they were named first.
@@ -21,12 +24,22 @@ pub(super) struct Worlds<'a> {
 
 impl<'a> Worlds<'a> {
     pub(super) fn new(config: &'a Path) -> Self {
-        Self { config, paths: Vec::new(), placed: Vec::new() }
+        Self { config, named: BTreeMap::new(), paths: Vec::new(), placed: Vec::new() }
     }
 
     /// Index of the world whose file `item` names; reads the file if it is new.
     pub(super) fn place(&mut self, item: &Item<'_>) -> Result<usize, ConfigError> {
-        let path = self.config.parent().unwrap_or(Path::new("")).join(item.text()?);
+        let name = item.text()?;
+        if let Some(index) = self.named.get(name) {
+            return Ok(*index);
+        }
+        let index = self.find(item, name)?;
+        self.named.insert(name.to_owned(), index);
+        Ok(index)
+    }
+
+    fn find(&mut self, item: &Item<'_>, name: &str) -> Result<usize, ConfigError> {
+        let path = self.config.parent().unwrap_or(Path::new("")).join(name);
         let real = std::fs::canonicalize(&path).unwrap_or_else(|_| path.clone());
         if let Some(index) = self.paths.iter().position(|known| *known == real) {
             return Ok(index);

@@ -1,5 +1,6 @@
 //! Arms that have everything below their roots in common, and so learn it once for each seed.
 
+use super::fingerprint::{classes, of_stem};
 use super::group::{Group, LearnerId};
 use crate::config::plan::{Arm, Plan};
 
@@ -14,20 +15,18 @@ pub struct Family {
 
 /// Sorts the plan's arms into families.
 pub fn families(plan: &Plan) -> Vec<Family> {
-    let mut families: Vec<Family> = Vec::new();
-    for (index, arm) in plan.arms.iter().enumerate() {
-        let stem = arm.skills.len() > 1;
-        match families.iter_mut().find(|family| family.stem && stem && related(&plan.arms[family.arms[0]], arm)) {
-            Some(family) => family.arms.push(index),
-            None => families.push(Family { arms: vec![index], stem }),
-        }
-    }
-    families
+    let stem = |arm: usize| plan.arms[arm].skills.len() > 1;
+    let related = |a: usize, b: usize| stem(a) && stem(b) && related(&plan.arms[a], &plan.arms[b]);
+    // Nothing is common to arms without a stem, so that each has a number of its own.
+    let print = |arm: usize| if stem(arm) { of_stem(&plan.arms[arm]) } else { arm as u64 };
+    let families = classes(plan.arms.len(), print, related);
+    families.into_iter().map(|arms| Family { stem: stem(arms[0]), arms }).collect()
 }
 
 fn related(a: &Arm, b: &Arm) -> bool {
     let below = |arm: &Arm| arm.skills.len() - 1;
-    (a.world, a.noise, a.robot) == (b.world, b.noise, b.robot) && a.skills[..below(a)] == b.skills[..below(b)]
+    (a.world, a.noise, a.robot, a.teacher) == (b.world, b.noise, b.robot, b.teacher)
+        && a.skills[..below(a)] == b.skills[..below(b)]
 }
 
 impl Family {
@@ -45,5 +44,5 @@ impl Family {
 
 /// The group that an arm belongs to.
 pub fn group_of(groups: &[Group], arm: usize) -> &Group {
-    groups.iter().find(|group| group.arms.contains(&arm)).unwrap_or(&groups[0])
+    groups.iter().find(|group| group.arms.binary_search(&arm).is_ok()).unwrap_or(&groups[0])
 }

@@ -1,10 +1,11 @@
-//! Arms x seeds -> cohorts -> results.
+//! Arms x points x seeds -> cohorts -> results.
 //!
 //! Learners are independent, so how they are grouped, in which order they train, and how often the run is
 //! interrupted changes no byte of any result.
 
 pub mod family;
 pub mod files;
+mod fingerprint;
 pub mod group;
 pub mod parity;
 pub mod result;

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 /// What `--set` says.
 pub(crate) fn with(set: &[&str]) -> Overrides {
-    Overrides { set: set.iter().map(|&text| text.to_owned()).collect(), seeds: None }
+    Overrides { set: set.iter().map(|&text| text.to_owned()).collect(), ..Overrides::default() }
 }
 
 /// Loads the first of these files.
