@@ -29,7 +29,7 @@ fn same(a: &Plan, b: &Plan) {
     assert_eq!(files(a), files(b));
     assert!(a.worlds.iter().zip(&b.worlds).all(|(a, b)| a.world == b.world));
     assert_eq!((&a.arms, &a.alterations), (&b.arms, &b.alterations));
-    assert_eq!((&a.evaluate, &a.teacher), (&b.evaluate, &b.teacher));
+    assert_eq!((&a.evaluate, &a.sweep), (&b.evaluate, &b.sweep));
     assert_eq!(a.resolved, b.resolved);
 }
 
