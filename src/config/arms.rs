@@ -92,8 +92,7 @@ impl Arms<'_> {
         // What is in nobody's tree is held against the first arm's world.
         let first = &trees[0].1;
         let skills = skills(first)?;
-        let world = Some(&worlds.placed[base[0].world].world);
-        let reader = Reader { world, ..self.reader(first, base[0].teacher.bank) };
+        let reader = Reader { ground: Some(worlds.ground(base[0].world)), ..self.reader(first, base[0].teacher.bank) };
         let trained = |name: &str| base.iter().any(|arm| arm.skills.iter().any(|skill| skill.name == name));
         for link in hierarchy::links(&skills)?.iter().filter(|link| !trained(link.name) && link.mirror.is_none()) {
             reader.skill(link, &mut idle)?;
@@ -160,7 +159,7 @@ impl Arms<'_> {
     /// Reads skills that are not trained; those that are also need a world and an order.
     fn reader<'b>(&'b self, tree: &'b Node, bank: u32) -> Reader<'b> {
         let learning = tree.get("learning");
-        Reader { learning, world: None, bank, tested_at: self.tested_at, order: &[] }
+        Reader { learning, ground: None, bank, tested_at: self.tested_at, order: &[] }
     }
 
     /// Reads an arm at a point from its complete config.
@@ -178,8 +177,7 @@ impl Arms<'_> {
         let links = hierarchy::links(&table)?;
         let top = hierarchy::root(root.optional(keys::ROOT.name()).as_ref(), &links)?;
         let order = hierarchy::order(&links, top)?;
-        let reader =
-            Reader { world: Some(&worlds.placed[world].world), order: &order, ..self.reader(tree, teacher.bank) };
+        let reader = Reader { ground: Some(worlds.ground(world)), order: &order, ..self.reader(tree, teacher.bank) };
         let mut skills: Vec<Skill> = Vec::new();
         for &number in &order {
             let skill = trained(&links[number], &reader, &skills, idle)?;

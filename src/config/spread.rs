@@ -53,8 +53,8 @@ impl Arms<'_> {
         for (number, axis) in sweep.axes.iter().enumerate().filter(|(_, axis)| axis.size() > 1) {
             if !self.changes(&mut bases, sweep, number, worlds, idle)? {
                 let message = format!("`{}` changes nothing in any arm that is run", axis.key);
-                let hint = "a skill's own key wins over the one for all skills: name the skill, as in \
-                            skill.dock.learning.rate";
+                let hint = "nothing uses it, as momentum where the optimiser is adam; or all skills have their own: name the \
+                            skill, as in skill.dock.learning.rate";
                 return Err(axis.item.error(message, hint));
             }
         }

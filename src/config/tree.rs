@@ -125,6 +125,11 @@ impl Node {
         }
     }
 
+    /// Whether this is a table that holds the values of an axis of a sweep, and no further keys.
+    pub(crate) fn is_axis(&self) -> bool {
+        self.get("values").or_else(|| self.get("from")).is_some()
+    }
+
     /// The value under a key, if this is a table that has it.
     pub(crate) fn get(&self, key: &str) -> Option<&Node> {
         self.entry(key).map(|entry| &entry.node)
@@ -164,20 +169,21 @@ impl Node {
 
     /// Lays `over` on top: tables are merged key by key, anything else is replaced, and [`WHOLE`] ones are too.
     pub(crate) fn merge(&mut self, over: Node) {
-        self.merge_but(over, &WHOLE);
+        self.merge_unless(over, |key, _| WHOLE.contains(&key));
     }
 
-    fn merge_but(&mut self, over: Node, whole: &[&str]) {
+    fn merge_unless(&mut self, over: Node, whole: fn(&str, &Node) -> bool) {
         match (&mut self.value, over.value) {
             (Value::Table(below), Value::Table(above)) => {
                 // What somebody wrote is a better place for complaints than a default.
                 self.origin.replace_default(over.origin);
                 for entry in above {
                     match below.iter_mut().find(|old| old.key == entry.key) {
-                        Some(old) if !whole.contains(&entry.key.as_str()) => {
+                        Some(old) if !whole(&entry.key, &entry.node) => {
                             old.origin.replace_default(entry.origin);
-                            let whole = if entry.key == SWEEP { &[] } else { whole };
-                            old.node.merge_but(entry.node, whole);
+                            // Each threshold may be an axis, and an axis that is given anew has nothing of the old one.
+                            let whole = if entry.key == SWEEP { |_: &str, node: &Node| node.is_axis() } else { whole };
+                            old.node.merge_unless(entry.node, whole);
                         }
                         Some(old) => *old = entry,
                         None => below.push(entry),

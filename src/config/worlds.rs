@@ -5,7 +5,8 @@ use super::keys;
 use super::plan::PlacedWorld;
 use super::read::Item;
 use super::tree::{Node, Value};
-use crate::world;
+use crate::world::{self, World};
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -20,11 +21,42 @@ pub(super) struct Worlds<'a> {
     paths: Vec<PathBuf>,
     /// The worlds, in the order in which they were named first.
     pub(super) placed: Vec<PlacedWorld>,
+    /// What was found out of the regions of each.
+    looked: Vec<Looked>,
+}
+
+/// Whether regions of a world are empty, as far as it was asked: looking takes long, and sweeps ask thousands of times.
+#[derive(Debug, Default)]
+struct Looked(RefCell<BTreeMap<String, Option<bool>>>);
+
+/// A floor plan against which skills are held.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ground<'a> {
+    /// The floor plan.
+    pub(super) world: &'a World,
+    looked: &'a Looked,
+}
+
+impl Ground<'_> {
+    /// As [`World::region_is_empty`].
+    pub(super) fn region_is_empty(&self, name: &str) -> Option<bool> {
+        if let Some(known) = self.looked.0.borrow().get(name) {
+            return *known;
+        }
+        let empty = self.world.region_is_empty(name);
+        self.looked.0.borrow_mut().insert(name.to_owned(), empty);
+        empty
+    }
 }
 
 impl<'a> Worlds<'a> {
     pub(super) fn new(config: &'a Path) -> Self {
-        Self { config, named: BTreeMap::new(), paths: Vec::new(), placed: Vec::new() }
+        Self { config, named: BTreeMap::new(), paths: Vec::new(), placed: Vec::new(), looked: Vec::new() }
+    }
+
+    /// The floor plan with this index.
+    pub(super) fn ground(&self, index: usize) -> Ground<'_> {
+        Ground { world: &self.placed[index].world, looked: &self.looked[index] }
     }
 
     /// Index of the world whose file `item` names; reads the file if it is new.
@@ -51,6 +83,7 @@ impl<'a> Worlds<'a> {
             item.error(error.message(), hint)
         })?;
         self.placed.push(PlacedWorld { world: world::parse(&text, &path)?, text, file: self.free_name(&path) });
+        self.looked.push(Looked::default());
         self.paths.push(real);
         Ok(self.placed.len() - 1)
     }

@@ -49,22 +49,15 @@ pub(super) fn collect<'a>(
     axes: &mut Vec<Axis<'a>>,
 ) -> Result<(), ConfigError> {
     let mut path = above.to_vec();
-    path.extend(entry.key.split('.'));
-    if let Value::Table(entries) = &item.node.value
-        && names.inner(&path)
-        && !entries.iter().any(|entry| entry.key == VALUES || entry.key == "from")
-    {
+    path.push(&entry.key);
+    if matches!(item.node.value, Value::Table(_)) && names.inner(&path) && !item.node.is_axis() {
         for (entry, item) in item.table()?.all() {
             collect(entry, &item, &path, names, axes)?;
         }
         return Ok(());
     }
     let allowed = names.allowed(&path, &entry.origin)?;
-    let axis = read(path.iter().map(|part| (*part).to_owned()).collect(), item, allowed)?;
-    if axes.iter().any(|other| other.key == axis.key) {
-        return Err(entry.origin.error(format!("the axis `{}` is there twice", axis.key), "name each key once"));
-    }
-    axes.push(axis);
+    axes.push(read(path.iter().map(|part| (*part).to_owned()).collect(), item, allowed)?);
     Ok(())
 }
 

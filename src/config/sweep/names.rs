@@ -71,6 +71,7 @@ impl<'a> Names<'a> {
         let all = self.all(path);
         let all: Vec<&str> = all.iter().map(String::as_str).collect();
         let hint = match nearest(&key, &all) {
+            Some(best) if best == key => "write the key without quotes".to_owned(),
             Some(best) => format!("did you mean `{best}`?"),
             None => "name a key as elsewhere in a config, such as learning.gamma or skill.dock.trials".to_owned(),
         };
