@@ -1,10 +1,11 @@
-//! Arms that have everything below their roots in common, and so learn it once for each seed.
+//! Arms that have everything below their roots in common, and so learn it once for each seed; and arms without anything
+//! below their roots that can train in one cohort.
 
-use super::fingerprint::{classes, of_stem};
-use super::group::{Group, LearnerId};
+use super::fingerprint::{classes, of_stem, of_tasks};
+use super::group::{Group, LearnerId, alike};
 use crate::config::plan::{Arm, Plan};
 
-/// Arms whose learners branch from one stem.
+/// Arms whose learners branch from one stem, or that have none and are of one group.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Family {
     /// Indices of the arms in the plan.
@@ -15,10 +16,14 @@ pub struct Family {
 
 /// Sorts the plan's arms into families.
 pub fn families(plan: &Plan) -> Vec<Family> {
-    let stem = |arm: usize| plan.arms[arm].skills.len() > 1;
-    let related = |a: usize, b: usize| stem(a) && stem(b) && related(&plan.arms[a], &plan.arms[b]);
-    // Nothing is common to arms without a stem, so that each has a number of its own.
-    let print = |arm: usize| if stem(arm) { of_stem(&plan.arms[arm]) } else { arm as u64 };
+    let arm = |index: usize| &plan.arms[index];
+    let stem = |index: usize| arm(index).skills.len() > 1;
+    let related = |a: usize, b: usize| match (stem(a), stem(b)) {
+        (true, true) => related(arm(a), arm(b)),
+        (false, false) => alike(arm(a), arm(b)),
+        _ => false,
+    };
+    let print = |index: usize| if stem(index) { of_stem(arm(index)) } else { of_tasks(arm(index)) };
     let families = classes(plan.arms.len(), print, related);
     families.into_iter().map(|arms| Family { stem: stem(arms[0]), arms }).collect()
 }
@@ -44,5 +49,10 @@ impl Family {
 
 /// The group that an arm belongs to.
 pub fn group_of(groups: &[Group], arm: usize) -> &Group {
-    groups.iter().find(|group| group.arms.binary_search(&arm).is_ok()).unwrap_or(&groups[0])
+    &groups[group_index(groups, arm)]
+}
+
+/// Index of the group that an arm belongs to.
+pub fn group_index(groups: &[Group], arm: usize) -> usize {
+    groups.iter().position(|group| group.arms.binary_search(&arm).is_ok()).unwrap_or(0)
 }

@@ -58,7 +58,7 @@ pub fn groups(plan: &Plan) -> Result<Vec<Group>, SetupError> {
 }
 
 /// Whether two arms differ in nothing but per-learner numbers that the teacher does not see.
-fn alike(a: &Arm, b: &Arm) -> bool {
+pub(super) fn alike(a: &Arm, b: &Arm) -> bool {
     let bare = |skill: &Skill, like: &Skill| {
         let mut bare = Skill {
             learning: like.learning.clone(),
