@@ -73,7 +73,7 @@ fn numbers(skill: &Skill, hasher: &mut DefaultHasher) {
     (learning.taught_passes, learning.taught_replays, learning.inverse_temperature_trials).hash(hasher);
     let rate = match learning.optimiser {
         Optimiser::Sgd { rate, momentum } => [rate, momentum, 0.0, 0.0],
-        Optimiser::Adam { rate, beta1, beta2, epsilon } => [rate, beta1, beta2, epsilon],
+        Optimiser::Adam { rate, beta1, beta2, epsilon, .. } => [rate, beta1, beta2, epsilon],
     };
     singles(&rate, hasher);
     singles(&[learning.gamma, learning.lambda, learning.init, learning.rate_end_share, learning.reward_scale], hasher);
