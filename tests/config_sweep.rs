@@ -235,10 +235,14 @@ fn an_arm_without_an_axis_is_run_once() {
     assert_eq!(points("hierarchical"), (0..98).collect::<Vec<_>>());
     // The actions of the other arm have no thresholds.
     assert_eq!(points("monolithic"), [0, 1]);
-    let overrides = Overrides { arms: vec!["monolithic".into()], points: vec![1], ..with(&set) };
-    let alone = load(&shipped("thresholds.toml"), &overrides);
-    let error = alone.expect_err("this arm has none of two axes");
-    assert!(error.message().contains("no arm that is run has `skill.recharge.applicable.dock`"), "{error}");
+    let alone = |point| {
+        let overrides = Overrides { arms: vec!["monolithic".into()], points: vec![point], ..with(&set) };
+        load(&shipped("thresholds.toml"), &overrides)
+    };
+    let expected = plan.arms.iter().find(|arm| (arm.name.as_str(), arm.point) == ("monolithic", 1));
+    assert_eq!(alone(1).expect("one of its points").arms.first(), expected);
+    let error = alone(2).expect_err("the same as its first point");
+    assert!(error.message().contains("point 2 changes no arm that is run"), "{error}");
 }
 
 /// Every mistake, by `--set`: what is said, and the hint.
@@ -284,9 +288,8 @@ fn mistakes_are_named() {
         ("sweep.only=[1]", "there is no point 1", "no sweep"),
         ("sweep.points=3", "the sweep has no axis", "learning.gamma"),
         ("sweep.design=spiral", "`spiral` is not one of the designs", "`grid`"),
-        ("sweep.skill.dock.applicable.move=[0.1]", "no arm that is run has", "chooses among actions"),
+        ("sweep.skill.dock.applicable.move=[0.1]", "no arm has", "chooses among actions"),
         ("sweep.skill.dock.reward.docekd=[1]", "`docekd` is not one of the events", "`docked`"),
-        ("sweep.learning.momentum=[0.1, 0.5]", "changes nothing in any arm", "momentum"),
     ];
     let more: &[(&[&str], &str, &str)] = &[
         (&["sweep.design=random", "sweep.learning.gamma=[0.1, 0.2]"], "has no number of points", "points = 100"),
@@ -313,7 +316,7 @@ fn mistakes_are_named() {
         assert!(place.starts_with("--set sweep"), "{set:?}\n{error}");
     }
     for (set, message, hint) in [
-        (&["sweep.skill.recharge.applicable.dcok=[0.1]"][..], "no arm that is run has", "did you mean `dock`?"),
+        (&["sweep.skill.recharge.applicable.dcok=[0.1]"][..], "no arm has", "did you mean `dock`?"),
         // Every skill of these arms has a rate of its own, or no trials.
         (
             &["sweep.learning.rate=[0.1, 0.2]", "skill.dock.learning={rate=0.1}"],

@@ -102,8 +102,10 @@ impl Arms<'_> {
         let run = match sweep {
             None => wanted.iter().map(|arm| base[*arm].clone()).collect(),
             Some(sweep) => {
-                let bases = wanted.iter().map(|arm| Base { arm: &base[*arm], tree: trees[*arm].1.clone() }).collect();
-                self.spread(bases, sweep, worlds, &mut idle)?
+                let arms = base.iter().zip(&trees).enumerate();
+                let bases =
+                    arms.map(|(n, (arm, (_, tree)))| Base { arm, tree: tree.clone(), run: wanted.contains(&n) });
+                self.spread(bases.collect(), sweep, worlds, &mut idle)?
             }
         };
         idle.finish()?;

@@ -13,6 +13,8 @@ use std::collections::HashSet;
 pub(super) struct Base<'a> {
     pub(super) arm: &'a Arm,
     pub(super) tree: Node,
+    /// Whether it is chosen. The others show what an axis is for where one arm is run alone.
+    pub(super) run: bool,
 }
 
 impl Arms<'_> {
@@ -27,11 +29,11 @@ impl Arms<'_> {
     ) -> Result<Vec<Arm>, ConfigError> {
         for axis in &sweep.axes {
             if !bases.iter().any(|base| is_concerned(base.arm, &base.tree, axis, sweep)) {
-                return Err(axis.item.error(format!("no arm that is run has `{}`", axis.key), hint(axis, &bases)));
+                return Err(axis.item.error(format!("no arm has `{}`", axis.key), hint(axis, &bases)));
             }
         }
         let mut arms = Vec::new();
-        for Base { arm, tree } in &mut bases {
+        for Base { arm, tree, .. } in bases.iter_mut().filter(|base| base.run) {
             let own: Vec<usize> =
                 (0..sweep.axes.len()).filter(|axis| is_concerned(arm, tree, &sweep.axes[*axis], sweep)).collect();
             let mut seen = HashSet::new();
@@ -50,9 +52,10 @@ impl Arms<'_> {
                 "these arms do not have all the axes: run the first point with the same values on those they have";
             return Err(sweep.item.error(message, hint));
         }
+        bases.sort_by_key(|base| !base.run);
         for (number, axis) in sweep.axes.iter().enumerate().filter(|(_, axis)| axis.size() > 1) {
             if !self.changes(&mut bases, sweep, number, worlds, idle)? {
-                let message = format!("`{}` changes nothing in any arm that is run", axis.key);
+                let message = format!("`{}` changes nothing in any arm", axis.key);
                 let hint = "nothing uses it, as momentum where the optimiser is adam; or all skills have their own: name the \
                             skill, as in skill.dock.learning.rate";
                 return Err(axis.item.error(message, hint));
@@ -73,13 +76,16 @@ impl Arms<'_> {
         for point in &sweep.points {
             let mut other = point.clone();
             other[axis] = (point[axis] + 1) % sweep.axes[axis].size();
-            for Base { tree, .. } in &mut *bases {
+            for Base { tree, run, .. } in &mut *bases {
                 let mut at = |point: &[usize]| {
                     lay(tree, sweep, point);
                     self.arm(("", 0), tree, worlds, idle)
                 };
-                if at(point)? != at(&other)? {
-                    return Ok(true);
+                match (at(point), at(&other)) {
+                    (Ok(one), Ok(another)) if one != another => return Ok(true),
+                    (Err(error), _) | (_, Err(error)) if *run => return Err(error),
+                    // An arm that is not run need not suit the points.
+                    _ => {}
                 }
             }
         }
