@@ -28,6 +28,12 @@
 //! the rest: it is trained once for each seed, and each arm goes on from a copy ([`experiment::train`]), with the bytes
 //! of a learner that trained alone.
 //!
+//! # A sweep is more arms
+//!
+//! A sweep lays values over the config of each arm: every arm at every point is an arm of its own in the plan, with its
+//! number in the tables' column `point` ([`record::sweep`]). Nothing after the config stage knows more of it. Learners of
+//! several arms and points train in one cohort where their skills differ in numbers alone ([`experiment::cohorts`]).
+//!
 //! # Twins
 //!
 //! Every `shaders/PATH.wgsl` has its CPU twin at `src/PATH.rs`: same functions, same statements in the same
@@ -47,7 +53,7 @@
 //! | who demonstrates | [`teacher`] |
 //! | who executes the kernels | [`backend`] |
 //! | run folders | [`record`] |
-//! | arms x seeds -> cohorts -> results | [`experiment`] |
+//! | arms x points x seeds -> cohorts -> results | [`experiment`] |
 //! | statistics, figures, the page | [`report`], which reads run folders only |
 //! | commands | [`cli`] |
 //!

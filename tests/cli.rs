@@ -375,8 +375,10 @@ fn plan() -> skilltree::config::plan::Plan {
     desk.write("worlds/../world.toml", &finished()["world.toml"]);
     desk.write("config.toml", &finished()["config.toml"]);
     let set = vec![];
-    let plan =
-        skilltree::config::load(&desk.path().join("config.toml"), &skilltree::config::Overrides { set, seeds: None });
+    let plan = skilltree::config::load(
+        &desk.path().join("config.toml"),
+        &skilltree::config::Overrides { set, ..Default::default() },
+    );
     let mut plan = plan.unwrap();
     plan.resolved = String::from_utf8(finished()["config.toml"].clone()).unwrap();
     plan

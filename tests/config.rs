@@ -107,7 +107,7 @@ fn every_default_is_read_and_in_range() {
     // The defaults are the taught Adam arm of docking.
     assert_eq!(plan.arms[0].skills[0].learning, docking(&[]).arms[0].skills[0].learning);
     assert_eq!(plan.arms[0].noise, docking(&[]).arms[0].noise);
-    assert_eq!((plan.teacher, plan.evaluate), (docking(&[]).teacher, docking(&[]).evaluate));
+    assert_eq!((plan.arms[0].teacher, plan.evaluate), (docking(&[]).arms[0].teacher, docking(&[]).evaluate));
     for key in keys::ALL {
         let last = key.path.rsplit('.').next().expect("a name");
         let written = plan.resolved.contains(&format!("{last} = ")) || plan.resolved.contains(&format!(".{last}]"));

@@ -34,7 +34,7 @@ fn configs() -> &'static Path {
 
 fn plan(set: &[&str]) -> Plan {
     let set = set.iter().map(|argument| (*argument).to_owned()).collect();
-    let overrides = Overrides { set, seeds: Some("0".to_owned()) };
+    let overrides = Overrides { set, seeds: Some("0".to_owned()), ..Overrides::default() };
     load(&configs().join("docking.toml"), &overrides).unwrap_or_else(|error| panic!("{error}"))
 }
 

@@ -121,9 +121,9 @@ fn nothing_but_twins_stands_among_the_kernels() {
 }
 
 /// Each part of the house and what it may use. `learner` is the shared layout of memory: world and config read
-/// its sizes from it. Experiments hand their results to `record`; reports read run folders only.
+/// its sizes from it. `record` keeps a sweep in the config's words. Experiments hand their results to `record`; reports read run folders only.
 const DIRECTION: &[(&str, &[&str])] = &[
-    ("config", &["world", "learner"]),
+    ("config", &["world", "learner", "math"]),
     ("world", &["config", "learner"]),
     ("math", &["learner"]),
     ("learner", &["config", "world", "math", "robot", "skill", "qnet"]),
@@ -136,7 +136,7 @@ const DIRECTION: &[(&str, &[&str])] = &[
     ("step", KERNELS),
     ("teacher", &["config", "world", "learner", "math", "robot", "skill", "lesson"]),
     ("backend", &["learner", "math", "robot", "skill", "qnet", "lesson", "advance", "evaluate", "step"]),
-    ("record", &[]),
+    ("record", &["config"]),
     (
         "experiment",
         &[

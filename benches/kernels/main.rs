@@ -38,7 +38,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     ];
     let seeds = Some(format!("0..{LEARNERS}"));
     let config = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/docking.toml");
-    let plan = load(&config, &Overrides { set, seeds })?;
+    let plan = load(&config, &Overrides { set, seeds, ..Overrides::default() })?;
     let group = groups(&plan)?.swap_remove(0);
     let mut backend = CpuBackend::new(1, Some(u32::MAX))?;
     println!("{}, {SAMPLES} samples in turn, medians", backend.describe());

@@ -3,7 +3,7 @@
 //! The twins are plain arithmetic without fused operations, so the instruction set they are compiled for
 //! changes their speed and not their bytes.
 
-use super::{Backend, BackendError, Cohort, Stop, Test, fresh};
+use super::{Backend, BackendError, Cohort, Stop, Test, fresh, memory};
 use crate::advance::advance;
 use crate::evaluate::{STATE_CUT, STATE_FRESH, evaluate};
 use crate::learner::layout::{Cursor, Dispatch, Episode, Robot, Settings};
@@ -17,6 +17,9 @@ const QUANTA: u32 = 16_384;
 
 /// Learners that train together: few, so that finished ones are committed early.
 const COHORT: usize = 32;
+
+/// Share of the free memory that a cohort may take. The rest is for results, and for others.
+const MEMORY_SHARE: f64 = 0.5;
 
 /// Executes the twins on a pool of threads.
 #[derive(Debug)]
@@ -159,8 +162,9 @@ impl Backend for CpuBackend {
         None
     }
 
-    fn cohort_size(&self, _bytes_per_learner: usize) -> usize {
-        COHORT.max(self.pool.current_num_threads() * 4)
+    fn cohort_size(&self, bytes_per_learner: usize) -> Result<usize, BackendError> {
+        let most = COHORT.max(self.pool.current_num_threads() * 4);
+        memory::fitting(memory::free(), MEMORY_SHARE, bytes_per_learner, most)
     }
 
     fn load(&mut self, cohort: Cohort) -> Result<(), BackendError> {

@@ -195,7 +195,7 @@ impl Backend for GpuBackend {
         Some(self.device.info.name.clone())
     }
 
-    fn cohort_size(&self, bytes_per_learner: usize) -> usize {
+    fn cohort_size(&self, bytes_per_learner: usize) -> Result<usize, BackendError> {
         // Cohorts are cut into shards, so no buffer's limit counts here, only memory.
         shards::fitting(&self.device, bytes_per_learner)
     }

@@ -5,6 +5,7 @@
 
 pub mod cpu;
 pub mod gpu;
+pub mod memory;
 pub mod parity;
 
 use crate::evaluate::STATE_FRESH;
@@ -84,7 +85,10 @@ pub trait Backend {
     fn adapter(&self) -> Option<String>;
 
     /// Learners that best train together, given the bytes that one takes. No result depends on it.
-    fn cohort_size(&self, bytes_per_learner: usize) -> usize;
+    ///
+    /// # Errors
+    /// [`BackendError::NoRoom`] if not even one fits the memory.
+    fn cohort_size(&self, bytes_per_learner: usize) -> Result<usize, BackendError>;
 
     /// Takes the cohort's memory; everything else works on it until the next load.
     ///
@@ -136,6 +140,19 @@ pub enum BackendError {
         learners: usize,
         /// Which limit was met.
         message: String,
+    },
+    /// Not even one learner fits.
+    #[error(
+        "one learner takes {:.1} MB, and there is room for {:.1} MB\nhint: end other programs, or make learners smaller: \
+         fewer lessons in `learning.memory`, less `max_steps`, fewer skills",
+        *bytes as f64 / 1e6,
+        *room as f64 / 1e6
+    )]
+    NoRoom {
+        /// What one learner takes.
+        bytes: u64,
+        /// What there is for a cohort: a share of the free memory, or a limit of the device.
+        room: u64,
     },
     /// The device was lost, hung or misbehaved.
     #[error(

@@ -5,6 +5,7 @@ mod devices;
 mod failure;
 mod output;
 mod parity;
+mod plan;
 mod probe;
 mod progress;
 mod report;

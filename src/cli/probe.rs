@@ -73,7 +73,7 @@ struct Reading {
 }
 
 pub(super) fn probe(arguments: &Arguments) -> Result<(), Failure> {
-    let plan = load(&arguments.config, &Overrides { set: arguments.set.clone(), seeds: None })?;
+    let plan = load(&arguments.config, &Overrides { set: arguments.set.clone(), ..Overrides::default() })?;
     let pose = pose_of(&arguments.at, plan.world())?;
     let actions = actions_of(&arguments.actions)?;
     let noise = if arguments.noise == Noisy::Off { SILENT } else { plan.arms[0].noise };

@@ -3,10 +3,10 @@
 use super::backend::BackendArguments;
 use super::output::{print, tell};
 use super::progress::RunProgress;
-use super::{Failure, count, exit_codes};
+use super::{Failure, exit_codes, plan};
 use crate::config::plan::Plan;
 use crate::config::{Overrides, load};
-use crate::experiment::group::{Group, groups};
+use crate::experiment::group::groups;
 use crate::experiment::run::{Options, run as run_experiment};
 use crate::record::{Provenance, RunFolder, State, folder, tables};
 use crate::report;
@@ -24,7 +24,9 @@ use std::time::{Instant, SystemTime};
     "  skilltree run configs/quick.toml\n",
     "  skilltree run configs/docking.toml --seeds 0..256 --out runs/docking-256\n",
     "  skilltree run configs/docking.toml --set 'arms=[\"taught-adam\"]'\n",
-    "  skilltree run configs/docking.toml --set learning.rate=0.01 --out runs/fast\n\n",
+    "  skilltree run configs/docking.toml --set learning.rate=0.01 --out runs/fast\n",
+    "  skilltree run configs/thresholds.toml --dry-run\n",
+    "  skilltree run configs/sweep.toml --arm taught-adam --point 3 --seeds 1 --out runs/one\n\n",
     "No choice of backend, threads, cohort or quanta changes a byte of the results. A run can be stopped at any time: ",
     "the same command continues it after the last cohort that was saved.\n\n",
     exit_codes!()
@@ -35,6 +37,12 @@ pub(super) struct Arguments {
     /// Seeds, instead of the config's: `0..7` (7 left out), `5`, `1,2,5..9`.
     #[arg(long, value_name = "SEEDS")]
     seeds: Option<String>,
+    /// Runs this arm only; may be given several times.
+    #[arg(long, value_name = "ARM")]
+    arm: Vec<String>,
+    /// Runs this point of the sweep only, counted from 0 as in the tables; may be given several times.
+    #[arg(long, value_name = "N")]
+    point: Vec<u32>,
     /// Sets a key of the config, such as `learning.rate=0.01`; may be given several times.
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
@@ -43,46 +51,51 @@ pub(super) struct Arguments {
     /// Learners that train together and are saved together; chosen to suit the backend if not given.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     cohort: Option<u32>,
+    /// Only says what would be run, what it would take and how long; writes nothing.
+    #[arg(long)]
+    dry_run: bool,
     /// The run folder; `runs/NAME` if not given, with the config's name.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let overrides = Overrides { set: arguments.set.clone(), seeds: arguments.seeds.clone() };
+    let overrides = Overrides {
+        set: arguments.set.clone(),
+        seeds: arguments.seeds.clone(),
+        arms: arguments.arm.clone(),
+        points: arguments.point.clone(),
+    };
     let plan = load(&arguments.config, &overrides)?;
     let out = arguments.out.clone().unwrap_or_else(|| Path::new("runs").join(&plan.name));
     let worlds: Vec<(&str, &str)> = plan.worlds.iter().map(|world| (&*world.file, &*world.text)).collect();
     let open = || RunFolder::open(&out, &plan.resolved, &worlds);
     // A folder that is there is looked at first. A new one is made last: what is refused leaves nothing behind.
-    let there = if is_new(&out) { None } else { Some(open()?) };
+    let there = if arguments.dry_run || is_new(&out) { None } else { Some(open()?) };
     if there.as_ref().is_some_and(|folder| folder.state() == State::Complete) {
         drop(there);
         tell(&format!("{} is complete: nothing is left to run", out.display()));
         return conclude(&out);
     }
-    let started = Instant::now();
     let mut backend = arguments.backend.open()?;
     let groups = groups(&plan)?;
+    let options = Options { cohort: arguments.cohort.map(|cohort| cohort as usize) };
+    let forecast = plan::show(&plan, &groups, backend.as_mut(), options)?;
+    tell(&format!("folder:   {}", out.display()));
+    if arguments.dry_run {
+        tell("nothing was run or written (--dry-run)");
+        return Ok(());
+    }
     let run_folder = match there {
         Some(folder) => folder,
         None => open()?,
     };
-    let (learners, trials) = size(&plan);
-    tell(if plan.title.is_empty() { &plan.name } else { &plan.title });
-    let worlds: Vec<&str> = plan.worlds.iter().map(|placed| placed.world.name.as_str()).collect();
-    tell(&format!("world:    {}", worlds.join(", ")));
-    tell(&format!(
-        "learners: {learners} ({}, {}), {}",
-        count(plan.arms.len(), "arm"),
-        count(plan.seeds.len(), "seed"),
-        memory(&groups)
-    ));
-    tell(&format!("backend:  {}", backend.describe()));
-    let again = if run_folder.state() == State::Partial { ", continued" } else { "" };
-    tell(&format!("folder:   {}{again}", out.display()));
-    let options = Options { cohort: arguments.cohort.map(|cohort| cohort as usize) };
-    let mut progress = RunProgress::new(learners, trials);
+    if run_folder.state() == State::Partial {
+        tell("          continued: what is finished there is kept");
+    }
+    let started = Instant::now();
+    let trials = trials(&plan);
+    let mut progress = RunProgress::new(forecast.learners, trials);
     let provenance = Provenance {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         commit: option_env!("SKILLTREE_COMMIT").map(str::to_owned),
@@ -108,16 +121,10 @@ fn is_new(out: &Path) -> bool {
     }
 }
 
-/// Learners of a plan, and trials of all of them together.
-fn size(plan: &Plan) -> (usize, u64) {
+/// Trials of all learners of a plan together.
+fn trials(plan: &Plan) -> u64 {
     let trials: u64 = plan.arms.iter().flat_map(|arm| &arm.skills).map(|skill| u64::from(skill.trials)).sum();
-    (plan.arms.len() * plan.seeds.len(), trials * plan.seeds.len() as u64)
-}
-
-/// What one learner takes while it trains: a cohort of them is in memory at a time.
-fn memory(groups: &[Group]) -> String {
-    let most = groups.iter().map(|group| group.shape.bytes_per_learner()).max().unwrap_or(0);
-    format!("{:.1} MB each while training", most as f64 / 1e6)
+    trials * plan.seeds.len() as u64
 }
 
 /// Makes the report of a complete run and says where everything is.

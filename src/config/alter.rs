@@ -6,15 +6,15 @@ use super::plan::{Alteration, Arm, Event, Noise};
 use super::read::Item;
 use super::skill::lacking;
 use super::tree::{Node, Origin};
-use super::worlds::Worlds;
+use super::worlds::{Ground, Worlds};
 use super::{keys, robot};
 use crate::world::World;
 
 /// Reads the table `alter`. Every arm's root must be able to do its test in each of its worlds.
-pub(super) fn read(
+pub(super) fn read<'a>(
     altered: &Node,
     base: &Node,
-    arms: &[Arm],
+    arms: impl Iterator<Item = &'a Arm> + Clone,
     worlds: &mut Worlds<'_>,
 ) -> Result<Vec<Alteration>, ConfigError> {
     let mut alterations = Vec::new();
@@ -34,10 +34,10 @@ pub(super) fn read(
         let noise = noise.map(|noise| laid_over(&noise, base)).transpose()?;
         let world = world.map(|world| worlds.place(&world)).transpose()?;
         let placed = |world: usize| &worlds.placed[world].world;
-        for arm in arms {
+        for arm in arms.clone() {
             let own = world.unwrap_or(arm.world);
             check_rooms(placed(own), placed(arm.world), place)?;
-            check_root(placed(own), arm, place)?;
+            check_root(worlds.ground(own), arm, place)?;
         }
         alterations.push(Alteration { name: entry.key.clone(), world, noise });
     }
@@ -65,9 +65,10 @@ fn check_rooms(world: &World, usual: &World, place: &Origin) -> Result<(), Confi
 }
 
 /// Refuses a world in which a root's tests cannot start, or never end as achieved.
-fn check_root(world: &World, arm: &Arm, place: &Origin) -> Result<(), ConfigError> {
+fn check_root(ground: Ground<'_>, arm: &Arm, place: &Origin) -> Result<(), ConfigError> {
     let Some(root) = arm.skills.last() else { return Ok(()) };
-    let problem = match world.region_is_empty(&root.tests) {
+    let world = ground.world;
+    let problem = match ground.region_is_empty(&root.tests) {
         None => Some(format!("the world `{}` has no region `{}`", world.name, root.tests)),
         Some(true) => Some(format!("in the world `{}` the robot fits nowhere in `{}`", world.name, root.tests)),
         Some(false) => None,

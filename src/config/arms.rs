@@ -6,14 +6,17 @@ use super::learning::Idle;
 use super::plan::{Arm, Skill};
 use super::read::{Item, Table, is_name};
 use super::skill::Reader;
+use super::spread::Base;
+use super::sweep::Sweep;
 use super::tree::{Entry, Node};
 use super::worlds::Worlds;
-use super::{children, keys, mirror, robot, set};
+use super::{children, keys, mirror, robot, set, teacher};
+use std::collections::BTreeSet;
 
 /// Name of the only arm of a config that has no `[arm.NAME]`.
 const BASE: &str = "base";
 /// What an arm may change.
-const ARM_KEYS: [&str; 6] = [LIKE, "world", "root", "learning", "skill", "robot"];
+const ARM_KEYS: [&str; 7] = [LIKE, "world", "root", "learning", "skill", "robot", "teacher"];
 /// Key of an arm that names the arm over which it is laid.
 const LIKE: &str = "like";
 
@@ -39,15 +42,35 @@ pub(super) struct Arms<'a> {
     pub(super) base: &'a Node,
     /// The tables of the arms, if there are any.
     pub(super) own: Option<&'a Node>,
-    /// Lessons in the teacher's bank.
-    pub(super) bank: u32,
     /// Trials after which skills are tested that do not name their own.
     pub(super) tested_at: &'a [u32],
 }
 
+/// The arms of a config.
+#[derive(Debug)]
+pub(super) struct Found {
+    /// All arms without the sweep, so that a mistake in one that is not run is found too.
+    base: Vec<Arm>,
+    /// The chosen arms, each at its points of the sweep.
+    pub(super) run: Vec<Arm>,
+}
+
+impl Found {
+    /// The arms with and without the sweep.
+    pub(super) fn all(&self) -> impl Iterator<Item = &Arm> + Clone {
+        self.base.iter().chain(&self.run)
+    }
+}
+
 impl Arms<'_> {
-    /// Reads all arms, so that a mistake in one that is not run is found too.
-    pub(super) fn read(&self, root: &Table<'_>, worlds: &mut Worlds<'_>) -> Result<Vec<Arm>, ConfigError> {
+    /// Reads all arms, and those that are chosen at each point of the sweep.
+    pub(super) fn read(
+        &self,
+        root: &Table<'_>,
+        chosen: Option<&Item<'_>>,
+        sweep: Option<&Sweep<'_>>,
+        worlds: &mut Worlds<'_>,
+    ) -> Result<Found, ConfigError> {
         // Read below, merged with each arm.
         for key in ARM_KEYS.into_iter().filter(|key| *key != LIKE) {
             root.optional(key);
@@ -57,25 +80,36 @@ impl Arms<'_> {
             named.choice("skills", &set::names(self.base, "skill"))?;
         }
         let trees = self.trees()?;
-        let Some((_, first)) = trees.first() else {
+        if trees.is_empty() {
             let hint = "add [arm.NAME], or remove [arm] to run the config as it stands";
             return Err(self.own.unwrap_or(self.base).origin.error("there are no arms", hint));
-        };
+        }
         let mut idle = Idle::default();
-        let mut arms = Vec::new();
+        let mut base = Vec::new();
         for (name, tree) in &trees {
-            arms.push(self.arm(name, tree, worlds, &mut idle)?);
+            base.push(self.arm((name, 0), tree, worlds, &mut idle)?);
         }
         // What is in nobody's tree is held against the first arm's world.
+        let first = &trees[0].1;
         let skills = skills(first)?;
-        let world = Some(&worlds.placed[arms[0].world].world);
-        let reader = Reader { world, ..self.reader(first) };
-        let trained = |name: &str| arms.iter().any(|arm| arm.skills.iter().any(|skill| skill.name == name));
+        let reader = Reader { ground: Some(worlds.ground(base[0].world)), ..self.reader(first, base[0].teacher.bank) };
+        let trained = |name: &str| base.iter().any(|arm| arm.skills.iter().any(|skill| skill.name == name));
         for link in hierarchy::links(&skills)?.iter().filter(|link| !trained(link.name) && link.mirror.is_none()) {
             reader.skill(link, &mut idle)?;
         }
+        let names: Vec<&str> = base.iter().map(|arm| arm.name.as_str()).collect();
+        let wanted = select(&names, chosen)?;
+        let run = match sweep {
+            None => wanted.iter().map(|arm| base[*arm].clone()).collect(),
+            Some(sweep) => {
+                let arms = base.iter().zip(&trees).enumerate();
+                let bases =
+                    arms.map(|(n, (arm, (_, tree)))| Base { arm, tree: tree.clone(), run: wanted.contains(&n) });
+                self.spread(bases.collect(), sweep, worlds, &mut idle)?
+            }
+        };
         idle.finish()?;
-        Ok(arms)
+        Ok(Found { base, run })
     }
 
     /// The name and the complete config of each arm.
@@ -125,26 +159,34 @@ impl Arms<'_> {
     }
 
     /// Reads skills that are not trained; those that are also need a world and an order.
-    fn reader<'b>(&'b self, tree: &'b Node) -> Reader<'b> {
+    fn reader<'b>(&'b self, tree: &'b Node, bank: u32) -> Reader<'b> {
         let learning = tree.get("learning");
-        Reader { learning, world: None, bank: self.bank, tested_at: self.tested_at, order: &[] }
+        Reader { learning, ground: None, bank, tested_at: self.tested_at, order: &[] }
     }
 
-    fn arm(&self, name: &str, tree: &Node, worlds: &mut Worlds<'_>, idle: &mut Idle) -> Result<Arm, ConfigError> {
+    /// Reads an arm at a point from its complete config.
+    pub(super) fn arm(
+        &self,
+        (name, point): (&str, u32),
+        tree: &Node,
+        worlds: &mut Worlds<'_>,
+        idle: &mut Idle,
+    ) -> Result<Arm, ConfigError> {
         let root = Item::root(tree).table()?;
         let world = worlds.place(&root.required(keys::WORLD.name(), "\"worlds/office.toml\"")?)?;
+        let teacher = teacher::read(&root.required("teacher", "{}")?)?;
         let table = skills(tree)?;
         let links = hierarchy::links(&table)?;
         let top = hierarchy::root(root.optional(keys::ROOT.name()).as_ref(), &links)?;
         let order = hierarchy::order(&links, top)?;
-        let reader = Reader { world: Some(&worlds.placed[world].world), order: &order, ..self.reader(tree) };
+        let reader = Reader { ground: Some(worlds.ground(world)), order: &order, ..self.reader(tree, teacher.bank) };
         let mut skills: Vec<Skill> = Vec::new();
         for &number in &order {
             let skill = trained(&links[number], &reader, &skills, idle)?;
             children::learnable(&links[number].item, number == top, &skill, &skills)?;
             skills.push(skill);
         }
-        let reader = self.reader(tree);
+        let reader = self.reader(tree, teacher.bank);
         for (_, link) in links.iter().enumerate().filter(|(number, _)| !order.contains(number)) {
             match link.mirror {
                 None => drop(reader.skill(link, idle)?),
@@ -152,7 +194,7 @@ impl Arms<'_> {
             }
         }
         let (noise, robot) = robot::read(&root.required("robot", "{}")?)?;
-        Ok(Arm { name: name.to_owned(), world, skills, noise, robot })
+        Ok(Arm { name: name.to_owned(), point, world, skills, noise, robot, teacher })
     }
 }
 
@@ -186,19 +228,18 @@ pub(super) fn small_name(entry: &Entry, what: &str) -> Result<(), ConfigError> {
     Err(entry.origin.error(format!("`{name}` cannot be the name of {what}"), hint))
 }
 
-/// The chosen arms, in the order of the file.
-pub(super) fn select(arms: Vec<Arm>, chosen: &Item<'_>) -> Result<Vec<Arm>, ConfigError> {
-    let names: Vec<&str> = arms.iter().map(|arm| arm.name.as_str()).collect();
-    let mut wanted = vec![false; arms.len()];
+/// Indices of the chosen arms, in the order of the file; all if none is.
+fn select(names: &[&str], chosen: Option<&Item<'_>>) -> Result<Vec<usize>, ConfigError> {
+    let Some(chosen) = chosen else { return Ok((0..names.len()).collect()) };
+    let mut wanted = BTreeSet::new();
     for item in chosen.items()? {
-        let at = item.choice("arms", &names)?;
-        if wanted[at] {
+        let at = item.choice("arms", names)?;
+        if !wanted.insert(at) {
             return Err(item.error(format!("the arm `{}` is there twice", names[at]), "name each once"));
         }
-        wanted[at] = true;
     }
-    if !wanted.contains(&true) {
-        return Err(chosen.error("no arm is chosen", format!("choose among {}, or leave `arms` out", list(&names))));
+    if wanted.is_empty() {
+        return Err(chosen.error("no arm is chosen", format!("choose among {}, or leave `arms` out", list(names))));
     }
-    Ok(arms.into_iter().zip(wanted).filter(|(_, wanted)| *wanted).map(|(arm, _)| arm).collect())
+    Ok(wanted.into_iter().collect())
 }

@@ -153,6 +153,10 @@ keys! {
     ARMS = "arms", None, Other("a list of arms"), Ours, "the arms that are run; all if left out";
     ARM_LIKE = "arm.*.like", None, Other("the name of an arm"), Ours, "arm over which this one is laid";
 
+    SWEEP_DESIGN = "sweep.design", None, Choice(&["grid", "random"]), Ours, "how the points of a sweep lie: all combinations of values, or drawn at random with the config's seed; grid if left out. Every other key of `sweep` is one of world, root, learning, skill, robot or teacher, with a list of values or a range";
+    SWEEP_POINTS = "sweep.points", None, Whole(1, 65_536), Ours, "number of points of a random sweep; required there";
+    SWEEP_ONLY = "sweep.only", None, Other("a list of whole numbers"), Ours, "the points that are run, counted from 0; all if left out";
+
     EVALUATE_AT = "evaluate.at", Some("[0, 25, 50, 75, 100, 150, 200, 250, 300]"), Other("ascending whole numbers"), Ours, "trials of a skill after which it is tested; it always is after its last one";
     EVALUATE_EPISODES = "evaluate.episodes", Some("100"), Whole(1, 10_000), Ours, "greedy test trials each time";
     TEACHER_BANK = "teacher.bank", Some("256"), Whole(1, MANY), Ours, "lessons in the bank of each skill; learners draw theirs from it";

@@ -1,17 +1,17 @@
 //! From a config file and what the command line adds to a [`Plan`].
 //!
-//! Layers, each over the one before: defaults, the config that the file extends, the file, `--set`, and an arm's own table (into which
-//! `--set arm.NAME.key=value` goes first). Within a skill, `skill.NAME.learning` lies over `learning`, also over an
+//! Layers, each over the one before: defaults, the config that the file extends, the file, `--set`, an arm's own table
+//! (into which `--set arm.NAME.key=value` goes first), and the values at a point of the sweep. Within a skill, `skill.NAME.learning` lies over `learning`, also over an
 //! arm's: what names the skill is more specific.
 
-use super::arms::{self, Arms};
+use super::arms::Arms;
 use super::error::ConfigError;
 use super::keys::{self, Key};
-use super::plan::{Evaluate, Plan, Teacher};
+use super::plan::{Evaluate, Plan};
 use super::read::{Item, Section, Table};
-use super::tree::{Node, Origin, Source, Value};
+use super::tree::{Node, Origin, SWEEP, Source, Value};
 use super::worlds::Worlds;
-use super::{alter, seeds, set, write};
+use super::{alter, seeds, set, sweep, write};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -24,20 +24,51 @@ pub struct Overrides {
     pub set: Vec<String>,
     /// The value of `--seeds`, which wins over the file and over `--set`.
     pub seeds: Option<String>,
+    /// The values of `--arm`: only these arms are run, whatever the key `arms` says.
+    pub arms: Vec<String>,
+    /// The values of `--point`: only these points of the sweep are run.
+    pub points: Vec<u32>,
+}
+
+impl Overrides {
+    /// Lays all of it over a config.
+    fn apply(&self, tree: &mut Node) -> Result<(), ConfigError> {
+        for argument in &self.set {
+            set::apply(tree, argument)?;
+        }
+        if let Some(text) = &self.seeds {
+            tree.put(keys::SEEDS.name(), typed(Value::Text(text.clone()), seeds::argument(text)));
+        }
+        if !self.arms.is_empty() {
+            let arms = self.arms.iter().map(|arm| typed(Value::Text(arm.clone()), format!("--arm {arm}")));
+            tree.put(keys::ARMS.name(), typed(Value::List(arms.collect()), "--arm".to_owned()));
+        }
+        if !self.points.is_empty() {
+            let point = |point: &u32| typed(Value::Integer(i64::from(*point)), format!("--point {point}"));
+            let points = typed(Value::List(self.points.iter().map(point).collect()), "--point".to_owned());
+            if tree.get(SWEEP).is_none() {
+                tree.put(SWEEP, Node::empty(points.origin.clone()));
+            }
+            if let Some(sweep) = tree.get_mut(SWEEP) {
+                sweep.put(keys::SWEEP_ONLY.name(), points);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A value from the command line.
+fn typed(value: Value, argument: String) -> Node {
+    Node { value, origin: Origin { source: Arc::new(Source::Argument(argument)), span: 0..0 } }
 }
 
 /// Reads a config file, the world files that it names, and the command line's changes.
 pub fn load(path: &Path, overrides: &Overrides) -> Result<Plan, ConfigError> {
     let mut tree = read(path)?;
-    for argument in &overrides.set {
-        set::apply(&mut tree, argument)?;
-    }
-    if let Some(text) = &overrides.seeds {
-        let source = Arc::new(Source::Argument(seeds::argument(text)));
-        tree.put("seeds", Node { value: Value::Text(text.clone()), origin: Origin { source, span: 0..0 } });
-    }
+    overrides.apply(&mut tree)?;
     let mut own = tree.remove("arm").map(|entry| entry.node);
     let mut altered = tree.remove("alter").map(|entry| entry.node);
+    let mut swept = tree.remove(SWEEP).map(|entry| entry.node);
     let mut base = defaults(&tree)?;
     base.merge(tree);
 
@@ -48,30 +79,33 @@ pub fn load(path: &Path, overrides: &Overrides) -> Result<Plan, ConfigError> {
     };
     let mut worlds = Worlds::new(path);
     worlds.place(&root.required(keys::WORLD.name(), "\"worlds/office.toml\"")?)?;
-    let teacher = teacher(&root)?;
     let evaluate = evaluate(&root)?;
-    let arms = Arms { base: &base, own: own.as_ref(), bank: teacher.bank, tested_at: &evaluate.at };
-    let mut arms = arms.read(&root, &mut worlds)?;
+    let section = Section(root);
+    let run_seed = section.whole(&keys::SEED)?;
+    let sweep = sweep::read(swept.as_ref(), &base, run_seed)?;
+    let chosen = section.0.optional(keys::ARMS.name());
+    let arms = Arms { base: &base, own: own.as_ref(), tested_at: &evaluate.at };
+    let arms = arms.read(&section.0, chosen.as_ref(), sweep.as_ref(), &mut worlds)?;
     let alterations = match &altered {
-        Some(altered) => alter::read(altered, &base, &arms, &mut worlds)?,
+        Some(altered) => alter::read(altered, &base, arms.all(), &mut worlds)?,
         None => Vec::new(),
     };
-    if let Some(chosen) = root.optional(keys::ARMS.name()) {
-        arms = arms::select(arms, &chosen)?;
-    }
-    let section = Section(root);
     let title = section.required(&keys::TITLE, "\"...\"")?.text()?.to_owned();
-    let run_seed = section.whole(&keys::SEED)?;
     let seeds = seeds::read(&section.required(&keys::SEEDS, "\"0..7\"")?)?;
     section.0.finish()?;
 
+    let sweep = sweep.map(|sweep| sweep.plan(&mut worlds)).transpose()?;
     for group in own.iter_mut().chain(&mut altered) {
         worlds.rename(group)?;
     }
+    if let Some(swept) = &mut swept {
+        sweep::rename(swept, &mut worlds)?;
+    }
     let source = path.to_owned();
     let worlds = worlds.placed;
-    let resolved = resolve(base, (&name, &worlds[0].file), [("arm", own), ("alter", altered)]);
-    Ok(Plan { name, source, title, run_seed, seeds, worlds, arms, alterations, evaluate, teacher, resolved })
+    let resolved = resolve(base, (&name, &worlds[0].file), [(SWEEP, swept), ("arm", own), ("alter", altered)]);
+    let arms = arms.run;
+    Ok(Plan { name, source, title, run_seed, seeds, worlds, arms, sweep, alterations, evaluate, resolved })
 }
 
 /// A config's tree, laid over that of the config that it extends.
@@ -134,19 +168,6 @@ fn default(key: &Key, text: &str, path: &[&str]) -> Result<Node, ConfigError> {
     Ok(node)
 }
 
-fn teacher(root: &Table<'_>) -> Result<Teacher, ConfigError> {
-    let section = Section(root.required("teacher", "{}")?.table()?);
-    let teacher = Teacher {
-        bank: section.whole(&keys::TEACHER_BANK)?,
-        discount: section.number(&keys::TEACHER_DISCOUNT)?,
-        backward_cost: section.number(&keys::TEACHER_BACKWARD_COST)?,
-        collision_cost: section.number(&keys::TEACHER_COLLISION_COST)?,
-        episodes: section.whole(&keys::TEACHER_EPISODES)?,
-    };
-    section.0.finish()?;
-    Ok(teacher)
-}
-
 fn evaluate(root: &Table<'_>) -> Result<Evaluate, ConfigError> {
     let section = Section(root.required("evaluate", "{}")?.table()?);
     let at = section.required(&keys::EVALUATE_AT, "[0, 100]")?.ascending(keys::MANY)?;
@@ -156,7 +177,7 @@ fn evaluate(root: &Table<'_>) -> Result<Evaluate, ConfigError> {
 }
 
 /// The text that gives this plan again from a run folder, where the worlds lie under the names that they have here.
-fn resolve(mut base: Node, (name, world): (&str, &str), groups: [(&str, Option<Node>); 2]) -> String {
+fn resolve(mut base: Node, (name, world): (&str, &str), groups: [(&str, Option<Node>); 3]) -> String {
     let origin = base.origin.clone();
     let text = |text: &str| Node { value: Value::Text(text.to_owned()), origin: origin.clone() };
     base.put(keys::NAME.name(), text(name));

@@ -3,7 +3,8 @@
 //! [`keys`] is the one table of defaults and ranges. `tree` holds TOML with the place of every value, `set` adds what
 //! the command line changes, `read` takes typed values out and refuses what it does not know, and every complaint
 //! is a [`ConfigError`] that shows the place and a way out. `hierarchy` finds the skills of an arm and their order,
-//! `worlds` the floor plans. [`load()`] puts the layers together.
+//! `worlds` the floor plans,
+//! `sweep` the points at which arms are run. [`load()`] puts the layers together.
 
 mod alter;
 mod arms;
@@ -21,6 +22,9 @@ mod robot;
 mod seeds;
 mod set;
 mod skill;
+mod spread;
+mod sweep;
+mod teacher;
 pub(crate) mod tree;
 mod worlds;
 mod write;

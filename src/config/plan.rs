@@ -4,8 +4,10 @@
 //! plan, by [`crate::learner`].
 
 mod skill;
+mod sweep;
 
 pub use skill::{Action, Child, Choice, Event, Input, Persistence, Skill, Threshold};
+pub use sweep::{Axis, AxisValue, Design, Scale, Sweep};
 
 use crate::world::World;
 use std::path::PathBuf;
@@ -25,14 +27,14 @@ pub struct Plan {
     pub seeds: Vec<u32>,
     /// The floor plans that arms and alterations name, each once; the config's own is the first.
     pub worlds: Vec<PlacedWorld>,
-    /// The experimental conditions, in the order of the file.
+    /// The experimental conditions: each arm at each point of the sweep, by arm in the order of the file, then by point.
     pub arms: Vec<Arm>,
+    /// What differs between the points of an arm, if anything does.
+    pub sweep: Option<Sweep>,
     /// Other circumstances in which the learned roots are tested after their last trial, without training.
     pub alterations: Vec<Alteration>,
     /// When and how learners are tested.
     pub evaluate: Evaluate,
-    /// The teacher's bank and how it demonstrates.
-    pub teacher: Teacher,
     /// The whole config as resolved TOML: defaults, file and `--set` merged. Reading it gives this plan.
     pub resolved: String,
 }
@@ -47,6 +49,11 @@ impl Plan {
     pub fn world_of(&self, arm: &Arm) -> &World {
         &self.worlds[arm.world].world
     }
+
+    /// Whether the arm with this index is an earlier one at its next point.
+    pub fn continues(&self, arm: usize) -> bool {
+        arm > 0 && self.arms[arm - 1].name == self.arms[arm].name
+    }
 }
 
 /// A floor plan with the text that it was read from, kept so that a run folder can hold it.
@@ -60,11 +67,13 @@ pub struct PlacedWorld {
     pub file: String,
 }
 
-/// One experimental condition: the base config with this arm's changes applied.
+/// One experimental condition: the base config with this arm's changes applied, and over them a point of the sweep.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Arm {
-    /// Key of the arm in the config, `[a-z0-9-]+`.
+    /// Key of the arm in the config, `[a-z0-9-]+`; the same at all points.
     pub name: String,
+    /// Index into [`Sweep::points`]; 0 without a sweep.
+    pub point: u32,
     /// Index of its floor plan in [`Plan::worlds`].
     pub world: usize,
     /// The skills of the root's tree, children before parents; the last one is the root.
@@ -73,6 +82,8 @@ pub struct Arm {
     pub noise: Noise,
     /// What its robots remember within a trial, and the band beside a wall.
     pub robot: Robot,
+    /// The teacher's bank and how it demonstrates.
+    pub teacher: Teacher,
 }
 
 impl Arm {
@@ -243,7 +254,7 @@ pub struct Evaluate {
 }
 
 /// The teacher: a privileged planner.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Teacher {
     /// Lessons in the bank of each skill; learners draw theirs from it.
     pub bank: u32,

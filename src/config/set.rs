@@ -52,7 +52,7 @@ fn known(tree: &Node, keys: &[&str], wrong: &dyn Fn(&str, &str) -> ConfigError) 
         Err(wrong(&format!("there is no {what} `{name}`"), &suggest(name, &format!("{what}s"), &names)))
     };
     match keys {
-        ["skill", skill, ..] => check("skill", skill),
+        ["skill", skill, ..] | ["sweep", "skill", skill, ..] => check("skill", skill),
         ["arm", arm, "skill", skill, ..] => check("arm", arm).and_then(|()| check("skill", skill)),
         ["arm", arm, ..] => check("arm", arm),
         ["alter", alteration, ..] => check("alter", alteration),

@@ -7,6 +7,7 @@ use super::learning::{self, Idle};
 use super::plan::{Child, Event, Learning, Skill};
 use super::read::{Item, Section};
 use super::tree::{Node, Value};
+use super::worlds::Ground;
 use super::{children, inputs, mirror};
 use crate::learner::layout::MAX_STARTS;
 use crate::world::World;
@@ -18,7 +19,7 @@ pub(super) struct Reader<'a> {
     pub(super) learning: Option<&'a Node>,
     /// The arm's floor plan. None for skills that the arm does not train: they may belong in another one, so that
     /// regions, events and inputs are not held against it.
-    pub(super) world: Option<&'a World>,
+    pub(super) ground: Option<Ground<'a>>,
     /// Lessons in the teacher's bank.
     pub(super) bank: u32,
     /// Trials after which skills are tested that do not name their own.
@@ -30,7 +31,7 @@ pub(super) struct Reader<'a> {
 impl Reader<'_> {
     /// Reads a skill that is no mirror image.
     pub(super) fn skill(&self, link: &Link<'_>, idle: &mut Idle) -> Result<Skill, ConfigError> {
-        let world = self.world;
+        let (ground, world) = (self.ground, self.ground.map(|ground| ground.world));
         let section = Section(link.item.table()?);
         let asked = section.required(&keys::SKILL_INPUTS, "[\"sonar\", \"light\", \"bumpers\"]")?;
         let inputs = inputs::read(&asked, world)?;
@@ -39,9 +40,9 @@ impl Reader<'_> {
         section.0.optional(keys::SKILL_MIRROR.name());
         let applicable = children::applicable(&section.required(&keys::SKILL_APPLICABLE, "{}")?, &link.children)?;
         let reward = reward(&section.required(&keys::SKILL_REWARD, "{ docked = 100, collision = -10 }")?, world)?;
-        let starts = starts(&section.required(&keys::SKILL_STARTS, "\"anywhere\"")?, world)?;
+        let starts = starts(&section.required(&keys::SKILL_STARTS, "\"anywhere\"")?, ground)?;
         let tests = section.required(&keys::SKILL_TESTS, "\"anywhere\"")?;
-        let tests = region(tests.text()?, &|message, hint| tests.error(message, hint), world)?;
+        let tests = region(tests.text()?, &|message, hint| tests.error(message, hint), ground)?;
         let ends = ends(&section.required(&keys::SKILL_ENDS, "[\"docked\"]")?, world)?;
         let planned = planned(&section, link)?;
         let (lessons, trials) = (self.lessons(&section, link)?, section.whole(&keys::SKILL_TRIALS)?);
@@ -198,11 +199,12 @@ fn ends(item: &Item<'_>, world: Option<&World>) -> Result<u32, ConfigError> {
 }
 
 /// The name of a region in which a trial can start.
-fn region(name: &str, place: &Place<'_>, world: Option<&World>) -> Result<String, ConfigError> {
-    let Some(world) = world else { return Ok(name.to_owned()) };
+fn region(name: &str, place: &Place<'_>, ground: Option<Ground<'_>>) -> Result<String, ConfigError> {
+    let Some(ground) = ground else { return Ok(name.to_owned()) };
+    let world = ground.world;
     let names = world.region_names();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    match world.region_is_empty(name) {
+    match ground.region_is_empty(name) {
         None => {
             let message = format!("the world `{}` has no region `{name}`", world.name);
             Err(place(message, suggest(name, "regions", &names)))
@@ -216,9 +218,9 @@ fn region(name: &str, place: &Place<'_>, world: Option<&World>) -> Result<String
 }
 
 /// At least one region with its share.
-fn starts(item: &Item<'_>, world: Option<&World>) -> Result<Vec<(String, f32)>, ConfigError> {
+fn starts(item: &Item<'_>, ground: Option<Ground<'_>>) -> Result<Vec<(String, f32)>, ConfigError> {
     if let Value::Text(name) = &item.node.value {
-        return Ok(vec![(region(name, &|message, hint| item.error(message, hint), world)?, 1.0)]);
+        return Ok(vec![(region(name, &|message, hint| item.error(message, hint), ground)?, 1.0)]);
     }
     if !matches!(item.node.value, Value::Table(_)) {
         let message = format!("`{}` must be a region or a table of shares, not {}", item.name, item.node.kind());
@@ -227,7 +229,7 @@ fn starts(item: &Item<'_>, world: Option<&World>) -> Result<Vec<(String, f32)>, 
     let mut starts = Vec::new();
     let mut sum = 0.0;
     for (entry, share) in item.table()?.all() {
-        let name = region(&entry.key, &|message, hint| entry.origin.error(message, hint), world)?;
+        let name = region(&entry.key, &|message, hint| entry.origin.error(message, hint), ground)?;
         sum += share.double(keys::START_SHARE)?;
         starts.push((name, share.number(keys::START_SHARE)?));
     }

@@ -9,6 +9,8 @@ use toml::de::{DeTable, DeValue};
 /// Tables that are replaced as a whole: shares of start regions sum to 1, and thresholds belong to the children that
 /// are named beside them.
 const WHOLE: [&str; 2] = ["starts", "applicable"];
+/// The table whose keys stand for those of the rest: there, each member of [`WHOLE`] tables is an axis of its own.
+pub(crate) const SWEEP: &str = "sweep";
 
 /// A text that values come from.
 #[derive(Debug)]
@@ -123,6 +125,11 @@ impl Node {
         }
     }
 
+    /// Whether this is a table that holds the values of an axis of a sweep, and no further keys.
+    pub(crate) fn is_axis(&self) -> bool {
+        self.get("values").or_else(|| self.get("from")).is_some()
+    }
+
     /// The value under a key, if this is a table that has it.
     pub(crate) fn get(&self, key: &str) -> Option<&Node> {
         self.entry(key).map(|entry| &entry.node)
@@ -132,6 +139,14 @@ impl Node {
     pub(crate) fn entry(&self, key: &str) -> Option<&Entry> {
         match &self.value {
             Value::Table(entries) => entries.iter().find(|entry| entry.key == key),
+            _ => None,
+        }
+    }
+
+    /// The value under a key, to be changed.
+    pub(crate) fn get_mut(&mut self, key: &str) -> Option<&mut Node> {
+        match &mut self.value {
+            Value::Table(entries) => entries.iter_mut().find(|entry| entry.key == key).map(|entry| &mut entry.node),
             _ => None,
         }
     }
@@ -154,15 +169,21 @@ impl Node {
 
     /// Lays `over` on top: tables are merged key by key, anything else is replaced, and [`WHOLE`] ones are too.
     pub(crate) fn merge(&mut self, over: Node) {
+        self.merge_unless(over, |key, _| WHOLE.contains(&key));
+    }
+
+    fn merge_unless(&mut self, over: Node, whole: fn(&str, &Node) -> bool) {
         match (&mut self.value, over.value) {
             (Value::Table(below), Value::Table(above)) => {
                 // What somebody wrote is a better place for complaints than a default.
                 self.origin.replace_default(over.origin);
                 for entry in above {
                     match below.iter_mut().find(|old| old.key == entry.key) {
-                        Some(old) if !WHOLE.contains(&entry.key.as_str()) => {
+                        Some(old) if !whole(&entry.key, &entry.node) => {
                             old.origin.replace_default(entry.origin);
-                            old.node.merge(entry.node);
+                            // Each threshold may be an axis, and an axis that is given anew has nothing of the old one.
+                            let whole = if entry.key == SWEEP { |_: &str, node: &Node| node.is_axis() } else { whole };
+                            old.node.merge_unless(entry.node, whole);
                         }
                         Some(old) => *old = entry,
                         None => below.push(entry),

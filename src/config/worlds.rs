@@ -5,7 +5,9 @@ use super::keys;
 use super::plan::PlacedWorld;
 use super::read::Item;
 use super::tree::{Node, Value};
-use crate::world;
+use crate::world::{self, World};
+use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// World files read so far.
@@ -13,20 +15,63 @@ use std::path::{Path, PathBuf};
 pub(super) struct Worlds<'a> {
     /// The config file, from whose folder paths start.
     config: &'a Path,
+    /// Index of the world that each of these texts names.
+    named: BTreeMap<String, usize>,
     /// Where each of them lies, without symbolic links and detours.
     paths: Vec<PathBuf>,
     /// The worlds, in the order in which they were named first.
     pub(super) placed: Vec<PlacedWorld>,
+    /// What was found out of the regions of each.
+    looked: Vec<Looked>,
+}
+
+/// Whether regions of a world are empty, as far as it was asked: looking takes long, and sweeps ask thousands of times.
+#[derive(Debug, Default)]
+struct Looked(RefCell<BTreeMap<String, Option<bool>>>);
+
+/// A floor plan against which skills are held.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ground<'a> {
+    /// The floor plan.
+    pub(super) world: &'a World,
+    looked: &'a Looked,
+}
+
+impl Ground<'_> {
+    /// As [`World::region_is_empty`].
+    pub(super) fn region_is_empty(&self, name: &str) -> Option<bool> {
+        if let Some(known) = self.looked.0.borrow().get(name) {
+            return *known;
+        }
+        let empty = self.world.region_is_empty(name);
+        self.looked.0.borrow_mut().insert(name.to_owned(), empty);
+        empty
+    }
 }
 
 impl<'a> Worlds<'a> {
     pub(super) fn new(config: &'a Path) -> Self {
-        Self { config, paths: Vec::new(), placed: Vec::new() }
+        Self { config, named: BTreeMap::new(), paths: Vec::new(), placed: Vec::new(), looked: Vec::new() }
+    }
+
+    /// The floor plan with this index.
+    pub(super) fn ground(&self, index: usize) -> Ground<'_> {
+        Ground { world: &self.placed[index].world, looked: &self.looked[index] }
     }
 
     /// Index of the world whose file `item` names; reads the file if it is new.
     pub(super) fn place(&mut self, item: &Item<'_>) -> Result<usize, ConfigError> {
-        let path = self.config.parent().unwrap_or(Path::new("")).join(item.text()?);
+        let name = item.text()?;
+        if let Some(index) = self.named.get(name) {
+            return Ok(*index);
+        }
+        let index = self.find(item, name)?;
+        self.named.insert(name.to_owned(), index);
+        Ok(index)
+    }
+
+    fn find(&mut self, item: &Item<'_>, name: &str) -> Result<usize, ConfigError> {
+        let path = self.config.parent().unwrap_or(Path::new("")).join(name);
         let real = std::fs::canonicalize(&path).unwrap_or_else(|_| path.clone());
         if let Some(index) = self.paths.iter().position(|known| *known == real) {
             return Ok(index);
@@ -38,6 +83,7 @@ impl<'a> Worlds<'a> {
             item.error(error.message(), hint)
         })?;
         self.placed.push(PlacedWorld { world: world::parse(&text, &path)?, text, file: self.free_name(&path) });
+        self.looked.push(Looked::default());
         self.paths.push(real);
         Ok(self.placed.len() - 1)
     }

@@ -1,7 +1,7 @@
 //! A tree back to TOML text.
 
 use super::read::is_name;
-use super::tree::{Node, Value};
+use super::tree::{Node, SWEEP, Value};
 use std::fmt::Write;
 
 /// The text of a document: plain values first, then tables under headers, in the order of the tree.
@@ -13,6 +13,9 @@ pub(super) fn document(tree: &Node) -> String {
 
 fn table(node: &Node, path: &str, out: &mut String) {
     let Value::Table(entries) = &node.value else { return };
+    if path == SWEEP {
+        return axes(node, "", out);
+    }
     for entry in entries.iter().filter(|entry| !is_table(&entry.node)) {
         // Writing to a String cannot fail.
         let _ = writeln!(out, "{} = {}", key(&entry.key), value(&entry.node));
@@ -20,10 +23,24 @@ fn table(node: &Node, path: &str, out: &mut String) {
     for entry in entries.iter().filter(|entry| is_table(&entry.node)) {
         let path = if path.is_empty() { key(&entry.key) } else { format!("{path}.{}", key(&entry.key)) };
         // A table of tables needs no header of its own.
-        if holds_values(&entry.node) {
+        if holds_values(&entry.node) || path == SWEEP {
             let _ = writeln!(out, "\n[{path}]");
         }
         table(&entry.node, &path, out);
+    }
+}
+
+/// The axes of a sweep in their order, which numbers the points: no header may come between.
+fn axes(node: &Node, path: &str, out: &mut String) {
+    let Value::Table(entries) = &node.value else { return };
+    for entry in entries {
+        let path = if path.is_empty() { key(&entry.key) } else { format!("{path}.{}", key(&entry.key)) };
+        if is_table(&entry.node) && !entry.node.is_axis() {
+            axes(&entry.node, &path, out);
+        } else {
+            // Writing to a String cannot fail.
+            let _ = writeln!(out, "{path} = {}", value(&entry.node));
+        }
     }
 }
 

@@ -1,9 +1,11 @@
-//! Arms that have everything below their roots in common, and so learn it once for each seed.
+//! Arms that have everything below their roots in common, and so learn it once for each seed; and arms without anything
+//! below their roots that can train in one cohort.
 
-use super::group::{Group, LearnerId};
+use super::fingerprint::{classes, of_stem, of_tasks};
+use super::group::{Group, LearnerId, alike};
 use crate::config::plan::{Arm, Plan};
 
-/// Arms whose learners branch from one stem.
+/// Arms whose learners branch from one stem, or that have none and are of one group.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Family {
     /// Indices of the arms in the plan.
@@ -14,20 +16,22 @@ pub struct Family {
 
 /// Sorts the plan's arms into families.
 pub fn families(plan: &Plan) -> Vec<Family> {
-    let mut families: Vec<Family> = Vec::new();
-    for (index, arm) in plan.arms.iter().enumerate() {
-        let stem = arm.skills.len() > 1;
-        match families.iter_mut().find(|family| family.stem && stem && related(&plan.arms[family.arms[0]], arm)) {
-            Some(family) => family.arms.push(index),
-            None => families.push(Family { arms: vec![index], stem }),
-        }
-    }
-    families
+    let arm = |index: usize| &plan.arms[index];
+    let stem = |index: usize| arm(index).skills.len() > 1;
+    let related = |a: usize, b: usize| match (stem(a), stem(b)) {
+        (true, true) => related(arm(a), arm(b)),
+        (false, false) => alike(arm(a), arm(b)),
+        _ => false,
+    };
+    let print = |index: usize| if stem(index) { of_stem(arm(index)) } else { of_tasks(arm(index)) };
+    let families = classes(plan.arms.len(), print, related);
+    families.into_iter().map(|arms| Family { stem: stem(arms[0]), arms }).collect()
 }
 
 fn related(a: &Arm, b: &Arm) -> bool {
     let below = |arm: &Arm| arm.skills.len() - 1;
-    (a.world, a.noise, a.robot) == (b.world, b.noise, b.robot) && a.skills[..below(a)] == b.skills[..below(b)]
+    (a.world, a.noise, a.robot, a.teacher) == (b.world, b.noise, b.robot, b.teacher)
+        && a.skills[..below(a)] == b.skills[..below(b)]
 }
 
 impl Family {
@@ -45,5 +49,10 @@ impl Family {
 
 /// The group that an arm belongs to.
 pub fn group_of(groups: &[Group], arm: usize) -> &Group {
-    groups.iter().find(|group| group.arms.contains(&arm)).unwrap_or(&groups[0])
+    &groups[group_index(groups, arm)]
+}
+
+/// Index of the group that an arm belongs to.
+pub fn group_index(groups: &[Group], arm: usize) -> usize {
+    groups.iter().position(|group| group.arms.binary_search(&arm).is_ok()).unwrap_or(0)
 }

@@ -7,6 +7,7 @@ use super::train::unpack;
 use crate::config::plan::Plan;
 use crate::learner::layout::{LANES, ROW_WORDS};
 use crate::qnet::forward::net_of;
+use crate::record::sweep::{self, write_sweep};
 use crate::record::tables::{
     EVALUATIONS, EvaluationRow, Names, PLANNER, TRAINED, TRIALS, TrialRow, write_evaluations, write_trials,
 };
@@ -47,18 +48,16 @@ impl Results<'_> {
         let tables = [(TRIALS.to_owned(), trials), (EVALUATIONS.to_owned(), evaluations)];
         let readings = (places::FILE.to_owned(), places::write_places(&self.places)?);
         let examples = (trajectories::FILE.to_owned(), write_trajectories(&self.trajectories)?);
+        let sweep =
+            self.plan.sweep.as_ref().map(|sweep| Ok((sweep::FILE.to_owned(), write_sweep(sweep)?))).transpose()?;
         let weights =
             self.learners.values().map(|result| self.weights(result)).collect::<Result<Vec<_>, RecordError>>()?;
-        Ok(tables.into_iter().chain([readings, examples]).chain(weights))
+        Ok(tables.into_iter().chain([readings, examples]).chain(sweep).chain(weights))
     }
 
     fn names(&self) -> Names {
-        let mut names = Names {
-            arms: self.plan.arms.iter().map(|arm| arm.name.clone()).collect(),
-            skills: Vec::new(),
-            variants: vec![TRAINED.to_owned()],
-            rooms: Vec::new(),
-        };
+        let mut names =
+            Names { arms: Vec::new(), skills: Vec::new(), variants: vec![TRAINED.to_owned()], rooms: Vec::new() };
         names.variants.extend(self.plan.alterations.iter().map(|alteration| alteration.name.clone()));
         for room in self.plan.worlds.iter().flat_map(|placed| &placed.world.rooms) {
             if !names.rooms.contains(&room.name) {
@@ -71,18 +70,36 @@ impl Results<'_> {
                 names.skills.push(skill.name.clone());
             }
         }
+        names.arms = self.plan.arms.iter().map(|arm| arm.name.clone()).collect();
+        names.arms.dedup();
         for number in 0..self.groups.len() {
-            names.arms.push(self.bound_name(number));
+            let name = self.bound_name(number);
+            if !names.arms.contains(&name) {
+                names.arms.push(name);
+            }
         }
         names
     }
 
-    /// The planner's name for a group: each group has its own bound.
+    /// The planner's name for a group: each group has its own bound, at its first point.
     fn bound_name(&self, group: usize) -> String {
-        match group {
-            0 => PLANNER.to_owned(),
-            _ => format!("{PLANNER}-{}", self.plan.arms[self.groups[group].arms[0]].name),
-        }
+        let arm = |group: usize| &self.plan.arms[self.groups[group].arms[0]].name;
+        if arm(group) == arm(0) { PLANNER.to_owned() } else { format!("{PLANNER}-{}", arm(group)) }
+    }
+
+    /// Index of each of the plan's arms in [`Names::arms`], where an arm has one name at all points.
+    fn arm_indices(&self) -> Vec<u32> {
+        let mut index = 0;
+        let each = (0..self.plan.arms.len()).map(|arm| {
+            index += u32::from(arm > 0 && !self.plan.continues(arm));
+            index
+        });
+        each.collect()
+    }
+
+    /// Index of each of an arm's skills in [`Names::skills`].
+    fn skill_indices(&self, names: &Names, arm: usize) -> Vec<u32> {
+        (0..self.plan.arms[arm].skills.len()).map(|skill| self.skill_index(names, arm, skill as u32)).collect()
     }
 
     fn skill_index(&self, names: &Names, arm: usize, skill: u32) -> u32 {
@@ -92,14 +109,16 @@ impl Results<'_> {
 
     fn trial_rows(&self, names: &Names) -> Vec<TrialRow> {
         let mut rows = Vec::new();
+        let arms = self.arm_indices();
         for (id, result) in &self.learners {
+            let skills = self.skill_indices(names, id.arm);
             for row in result.rows.as_chunks::<ROW_WORDS>().0 {
                 let [skill, trial, actions, steps, reward, success, collisions, taught] = *row;
                 rows.push(TrialRow {
-                    arm: id.arm as u32,
-                    point: 0,
+                    arm: arms[id.arm],
+                    point: self.plan.arms[id.arm].point,
                     seed: id.seed,
-                    skill: self.skill_index(names, id.arm, skill),
+                    skill: skills[skill as usize],
                     trial,
                     actions,
                     steps,
@@ -144,10 +163,12 @@ impl Results<'_> {
             returned: 0.0,
             collisions: 0,
         };
+        let arms = self.arm_indices();
         for (id, result) in &self.learners {
             for test in &result.tests {
                 let row = EvaluationRow {
-                    arm: id.arm as u32,
+                    arm: arms[id.arm],
+                    point: self.plan.arms[id.arm].point,
                     seed: id.seed,
                     skill: self.skill_index(names, id.arm, test.skill),
                     trials: test.trials,
@@ -176,11 +197,15 @@ impl Results<'_> {
                         returned: f64::from(test.returned),
                     });
                 }
-                let arm = (self.plan.arms.len() + number) as u32;
+                let name = self.bound_name(number);
+                let arm = names.arms.iter().position(|known| *known == name).unwrap_or(0) as u32;
+                let point = self.plan.arms[group.arms[0]].point;
                 let skill = self.skill_index(names, group.arms[0], skill as u32);
-                push(EvaluationRow { arm, skill, ..blank }, world, &rooms);
+                push(EvaluationRow { arm, point, skill, ..blank }, world, &rooms);
             }
         }
+        // Groups come in the order of their first arms, bounds by name and point.
+        rows.sort_by_key(|row| (row.arm, row.point, row.seed));
         rows
     }
 
@@ -213,7 +238,7 @@ impl Results<'_> {
             }
             skills.push(SkillWeights { skill: skill.name.clone(), nets: written });
         }
-        let metadata = BTreeMap::from([
+        let mut metadata = BTreeMap::from([
             ("arm".to_owned(), arm.name.clone()),
             ("seed".to_owned(), result.id.seed.to_string()),
             ("run_seed".to_owned(), self.plan.run_seed.to_string()),
@@ -221,7 +246,13 @@ impl Results<'_> {
             ("transitions".to_owned(), result.updates.to_string()),
             ("thresholds".to_owned(), self.thresholds(result)),
         ]);
-        let path = format!("skills/{}-{}.safetensors", arm.name, result.id.seed);
+        let mut name = arm.name.clone();
+        if let Some(sweep) = &self.plan.sweep {
+            name = format!("{name}-p{}", arm.point);
+            metadata.insert("point".to_owned(), arm.point.to_string());
+            metadata.insert("values".to_owned(), sweep.describe(arm.point as usize));
+        }
+        let path = format!("skills/{name}-{}.safetensors", result.id.seed);
         Ok((path, write_weights(&skills, &metadata)?))
     }
 

@@ -1,5 +1,6 @@
 //! Arms that can train in one cohort: their skills agree in all but numbers, and one teacher serves them.
 
+use super::fingerprint::{classes, of_tasks};
 use crate::backend::Cohort;
 use crate::config::plan::{Action, Arm, Event, Plan, Skill};
 use crate::learner::build::{Shape, ShapeError};
@@ -22,7 +23,7 @@ pub struct LearnerId {
 /// Arms with one shape and one teacher, and what they share.
 #[derive(Debug)]
 pub struct Group {
-    /// Indices of the arms in the plan.
+    /// Indices of the arms in the plan, ascending.
     pub arms: Vec<usize>,
     /// Sizes and shapes.
     pub shape: Shape,
@@ -50,19 +51,14 @@ pub enum SetupError {
 /// # Errors
 /// Where a skill does not fit, or its teacher fails.
 pub fn groups(plan: &Plan) -> Result<Vec<Group>, SetupError> {
-    let mut members: Vec<Vec<usize>> = Vec::new();
-    for (index, arm) in plan.arms.iter().enumerate() {
-        match members.iter_mut().find(|group| alike(&plan.arms[group[0]], arm)) {
-            Some(group) => group.push(index),
-            None => members.push(vec![index]),
-        }
-    }
+    let arm = |index: usize| &plan.arms[index];
+    let members = classes(plan.arms.len(), |index| of_tasks(arm(index)), |a, b| alike(arm(a), arm(b)));
     let mut solved = Solved::default();
     members.into_iter().map(|arms| Group::new(plan, arms, &mut solved)).collect()
 }
 
 /// Whether two arms differ in nothing but per-learner numbers that the teacher does not see.
-fn alike(a: &Arm, b: &Arm) -> bool {
+pub(super) fn alike(a: &Arm, b: &Arm) -> bool {
     let bare = |skill: &Skill, like: &Skill| {
         let mut bare = Skill {
             learning: like.learning.clone(),
@@ -79,7 +75,7 @@ fn alike(a: &Arm, b: &Arm) -> bool {
         }
         bare
     };
-    (a.world, a.noise, a.robot) == (b.world, b.noise, b.robot)
+    (a.world, a.noise, a.robot, a.teacher) == (b.world, b.noise, b.robot, b.teacher)
         && a.skills.len() == b.skills.len()
         && a.skills.iter().zip(&b.skills).all(|(a, b)| *a == bare(b, a))
 }
@@ -98,7 +94,7 @@ struct Task {
 #[derive(Debug, Default)]
 struct Solved {
     planners: Vec<(Task, Rc<Planner>)>,
-    tested: Vec<(Task, String, u32)>,
+    tested: Vec<(Task, String, u32, u32)>,
 }
 
 impl Solved {
@@ -112,8 +108,8 @@ impl Solved {
     }
 
     /// Whether these tests are still to be made; from now on they are not.
-    fn claim(&mut self, task: &Task, skill: &Skill) -> bool {
-        let test = (task.clone(), skill.tests.clone(), skill.max_steps);
+    fn claim(&mut self, task: &Task, skill: &Skill, episodes: u32) -> bool {
+        let test = (task.clone(), skill.tests.clone(), skill.max_steps, episodes);
         let open = !self.tested.contains(&test);
         if open {
             self.tested.push(test);
@@ -132,7 +128,7 @@ impl Group {
         let (settings, ..) = shape.learner(first, plan.run_seed, 0);
         for (number, skill) in first.skills.iter().enumerate() {
             let taught = members.iter().any(|arm| arm.skills[number].lessons > 0);
-            let task = task_of(plan, first, skill);
+            let task = task_of(first, skill);
             // A mirror image has nothing of its own to plan.
             if skill.mirror.is_some() {
                 bounds.push(None);
@@ -147,12 +143,14 @@ impl Group {
                 settings: &teacher_settings(&settings[number]),
                 number: number as u32,
             };
-            let bank = if taught { teacher.bank(skill, plan.teacher.bank)? } else { Vec::new() };
-            bounds.push(solved.claim(&task, skill).then(|| teacher.tests(plan.teacher.episodes)));
+            let bank = if taught { teacher.bank(skill, first.teacher.bank)? } else { Vec::new() };
+            bounds.push(
+                solved.claim(&task, skill, first.teacher.episodes).then(|| teacher.tests(first.teacher.episodes)),
+            );
             let table = skill.planned.then(|| planner.table(&shared, settings[number].value_scale));
             let own = &mut shared.skills[number];
             own.bank_offset = shared.bank.len() as u32;
-            own.bank_lessons = if taught { plan.teacher.bank } else { 0 };
+            own.bank_lessons = if taught { first.teacher.bank } else { 0 };
             if let Some(table) = table {
                 own.planned = shared.atlas.len() as u32;
                 shared.atlas.extend(table);
@@ -215,19 +213,19 @@ fn lay_out(members: &[&Arm], world: &crate::world::World) -> Result<(Shape, Shar
 }
 
 /// What the teacher plans an arm's skills with.
-pub fn terms_of(plan: &Plan, arm: &Arm) -> Terms {
+pub fn terms_of(arm: &Arm) -> Terms {
     Terms {
         noise: arm.noise,
         robot: arm.robot,
-        discount: plan.teacher.discount,
-        backward_cost: plan.teacher.backward_cost,
-        collision_cost: plan.teacher.collision_cost,
+        discount: arm.teacher.discount,
+        backward_cost: arm.teacher.backward_cost,
+        collision_cost: arm.teacher.collision_cost,
         pitch: PITCH,
     }
 }
 
-fn task_of(plan: &Plan, arm: &Arm, skill: &Skill) -> Task {
-    let terms = terms_of(plan, arm);
+fn task_of(arm: &Arm, skill: &Skill) -> Task {
+    let terms = terms_of(arm);
     Task { world: arm.world, terms, reward: skill.reward, ends: skill.ends, actions: skill.actions() }
 }
 

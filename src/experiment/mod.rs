@@ -1,10 +1,13 @@
-//! Arms x seeds -> cohorts -> results.
+//! Arms x points x seeds -> cohorts -> results.
 //!
 //! Learners are independent, so how they are grouped, in which order they train, and how often the run is
 //! interrupted changes no byte of any result.
 
+pub mod cohorts;
 pub mod family;
 pub mod files;
+mod fingerprint;
+pub mod forecast;
 pub mod group;
 pub mod parity;
 pub mod result;

@@ -40,9 +40,11 @@ pub struct Sample {
 fn cut(plan: &Plan, learners: usize) -> Plan {
     let mut plan = plan.clone();
     plan.seeds = (0..learners.div_ceil(plan.arms.len()) as u32).collect();
-    plan.teacher.episodes = 1;
     let lessons = plan.arms.iter().flat_map(|arm| &arm.skills).map(|skill| skill.lessons).max();
-    plan.teacher.bank = plan.teacher.bank.min(lessons.unwrap_or(0).max(16));
+    for arm in &mut plan.arms {
+        arm.teacher.episodes = 1;
+        arm.teacher.bank = arm.teacher.bank.min(lessons.unwrap_or(0).max(16));
+    }
     for skill in plan.arms.iter_mut().flat_map(|arm| &mut arm.skills) {
         skill.trials = skill.trials.min(TRIALS);
         let learning = &mut skill.learning;

@@ -1,6 +1,7 @@
 //! Runs an experiment into a run folder: cohort after cohort, each committed before the next begins.
 
-use super::family::{families, group_of};
+use super::cohorts::stages;
+use super::family::group_of;
 use super::files::Results;
 use super::group::{Group, LearnerId};
 use super::result::{LearnerResult, decode, encode};
@@ -56,36 +57,27 @@ pub fn run(
     let trials_of = |id: &LearnerId| plan.arms[id.arm].skills.iter().map(|skill| u64::from(skill.trials)).sum::<u64>();
     let mut finished: u64 = learners.keys().map(trials_of).sum();
     observer.trials(finished);
-    for family in families(plan) {
-        let open = family.open_seeds(plan, |id| learners.contains_key(id));
-        let size = options.cohort.unwrap_or(backend.cohort_size(family.bytes_per_learner(groups))).max(1);
-        for seeds in open.chunks(size) {
-            let lacking = |arm: usize, learners: &BTreeMap<LearnerId, LearnerResult>| -> Vec<LearnerId> {
-                let ids = seeds.iter().map(|seed| LearnerId { arm, seed: *seed });
-                ids.filter(|id| !learners.contains_key(id)).collect()
-            };
-            let mut stems = Vec::new();
-            if family.stem {
-                let arm = family.arms[0];
-                let lacked: usize = family.arms.iter().map(|arm| lacking(*arm, &learners).len()).sum();
-                // The stem's trials count for every learner that will branch from it.
-                let share = |trials: u64| trials * lacked as u64 / seeds.len() as u64;
-                let progress = &mut |trials| observer.trials(finished + share(trials));
-                stems = train_stem(plan, group_of(groups, arm), (arm, seeds), backend, progress)?;
-            }
-            for arm in &family.arms {
-                let ids = lacking(*arm, &learners);
-                if ids.is_empty() {
-                    continue;
-                }
-                let group = group_of(groups, *arm);
-                let progress = &mut |trials| observer.trials(finished + trials);
-                let results = train(plan, group, &ids, &stems, backend, progress)?;
-                folder.commit_part(&part_name(&ids), &encode(&results))?;
-                finished += ids.iter().map(trials_of).sum::<u64>();
-                learners.extend(results.into_iter().map(|result| (result.id, result)));
-                observer.committed(learners.len());
-            }
+    let size = |bytes| match options.cohort {
+        Some(cohort) => Ok(cohort),
+        None => backend.cohort_size(bytes),
+    };
+    for stage in stages(plan, groups, size, |id| learners.contains_key(id))? {
+        let mut stems = Vec::new();
+        if let Some((arm, seeds)) = &stage.stems {
+            let branches: usize = stage.cohorts.iter().map(Vec::len).sum();
+            // The stem's trials count for every learner that will branch from it.
+            let share = |trials: u64| trials * branches as u64 / seeds.len() as u64;
+            let progress = &mut |trials| observer.trials(finished + share(trials));
+            stems = train_stem(plan, group_of(groups, *arm), (*arm, seeds), backend, progress)?;
+        }
+        for ids in &stage.cohorts {
+            let group = group_of(groups, ids[0].arm);
+            let progress = &mut |trials| observer.trials(finished + trials);
+            let results = train(plan, group, ids, &stems, backend, progress)?;
+            folder.commit_part(&part_name(ids), &encode(&results))?;
+            finished += ids.iter().map(trials_of).sum::<u64>();
+            learners.extend(results.into_iter().map(|result| (result.id, result)));
+            observer.committed(learners.len());
         }
     }
     let failed = learners.values().filter(|result| result.failed).count();

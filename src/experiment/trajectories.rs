@@ -15,11 +15,12 @@ use std::collections::BTreeMap;
 /// Keeps the examples' random numbers apart from those of tests.
 const NUMBER: u32 = 0xff_ffff;
 
-/// Greedy trials of every arm's root from every named place of its world. Made on the host by the kernel's twin: the
+/// Greedy trials of every arm's root, at its first point, from every named place of its world. Made on the host by the kernel's twin: the
 /// same for every backend.
 pub fn trajectories(plan: &Plan, groups: &[Group], learners: &BTreeMap<LearnerId, LearnerResult>) -> Vec<Trajectory> {
     let mut out = Vec::new();
-    for (arm, own) in plan.arms.iter().enumerate() {
+    // One point of a sweep is enough for an example.
+    for (arm, own) in plan.arms.iter().enumerate().filter(|(arm, _)| !plan.continues(*arm)) {
         let Some(result) = plan.seeds.first().and_then(|seed| learners.get(&LearnerId { arm, seed: *seed })) else {
             continue;
         };

@@ -33,6 +33,8 @@ pub enum Purpose {
     Statistics = 11,
     /// Which steps between decisions are learned from.
     Inner = 12,
+    /// Points of a sweep; never used by a kernel.
+    Sweep = 13,
 }
 
 /// Name and code of every purpose that a shader names.

@@ -28,7 +28,7 @@ pub(crate) fn plan_in(name: &str, text: &str, set: &[&str]) -> Plan {
     let path = folder.path().join("small.toml");
     std::fs::write(&path, format!("world = {world:?}\n{text}")).expect("the config is written");
     let set = set.iter().map(|argument| (*argument).to_owned()).collect();
-    load(&path, &Overrides { set, seeds: None }).unwrap_or_else(|error| panic!("{error}"))
+    load(&path, &Overrides { set, ..Overrides::default() }).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Four skills and one above them, for tests of single steps.

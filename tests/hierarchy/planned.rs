@@ -31,7 +31,7 @@ fn planned() -> (Plan, Group) {
 }
 
 fn planner(plan: &Plan, group: &Group, skill: &Skill) -> Planner {
-    Planner::new(plan.world(), &group.shared, skill, &terms_of(plan, &plan.arms[0]))
+    Planner::new(plan.world(), &group.shared, skill, &terms_of(&plan.arms[0]))
 }
 
 /// Values of all children at a pose of a trial that began in room `origin`.

@@ -88,7 +88,7 @@ impl Backend for Frail {
         None
     }
 
-    fn cohort_size(&self, bytes_per_learner: usize) -> usize {
+    fn cohort_size(&self, bytes_per_learner: usize) -> Result<usize, BackendError> {
         self.inner.cohort_size(bytes_per_learner)
     }
 

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 /// What `--set` says.
 pub(crate) fn with(set: &[&str]) -> Overrides {
-    Overrides { set: set.iter().map(|&text| text.to_owned()).collect(), seeds: None }
+    Overrides { set: set.iter().map(|&text| text.to_owned()).collect(), ..Overrides::default() }
 }
 
 /// Loads the first of these files.
@@ -29,7 +29,7 @@ fn same(a: &Plan, b: &Plan) {
     assert_eq!(files(a), files(b));
     assert!(a.worlds.iter().zip(&b.worlds).all(|(a, b)| a.world == b.world));
     assert_eq!((&a.arms, &a.alterations), (&b.arms, &b.alterations));
-    assert_eq!((&a.evaluate, &a.teacher), (&b.evaluate, &b.teacher));
+    assert_eq!((&a.evaluate, &a.sweep), (&b.evaluate, &b.sweep));
     assert_eq!(a.resolved, b.resolved);
 }
 

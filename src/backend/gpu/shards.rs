@@ -3,7 +3,7 @@
 //! A learner's numbers do not depend on its place, so neither do they on where the cohort is cut.
 
 use super::device::{Device, is_software};
-use crate::backend::{BackendError, Cohort};
+use crate::backend::{BackendError, Cohort, memory};
 use crate::learner::layout::{Cursor, Settings, SkillPlan, WorldPlan};
 use crate::learner::memory::Shared;
 use std::ops::Range;
@@ -11,6 +11,10 @@ use wgpu::BufferUsages;
 
 /// Label of the buffers that outlive a kernel.
 const COHORT: &str = "advance";
+/// Memory that is taken for granted on a graphics card.
+const CARD: u64 = 4 << 30;
+/// Share of the host's free memory that a cohort may take.
+const HOST_SHARE: f64 = 0.25;
 /// Memory that is left to the rest of the machine where the device shares it.
 const SPARE: u64 = 512 << 20;
 
@@ -110,11 +114,15 @@ impl Shard {
 }
 
 /// Learners that keep a device busy and fit its memory; wgpu does not tell how much a graphics card has.
-pub fn fitting(device: &Device, bytes_per_learner: usize) -> usize {
-    let (most, memory) = if is_software(&device.info) { (64, u64::MAX) } else { (16_384, 4 << 30) };
-    // The host keeps a copy, and a software device's memory is the host's.
-    let host = free_memory().map_or(u64::MAX, |free| free / 4);
-    (host.min(memory) / bytes_per_learner.max(1) as u64).clamp(1, most) as usize
+///
+/// # Errors
+/// [`BackendError::NoRoom`] if not even one fits.
+pub fn fitting(device: &Device, bytes_per_learner: usize) -> Result<usize, BackendError> {
+    // A software device's memory is the host's.
+    let (most, device) = if is_software(&device.info) { (64, None) } else { (16_384, Some(CARD)) };
+    let most = memory::fitting(device, 1.0, bytes_per_learner, most)?;
+    // The host keeps a copy.
+    memory::fitting(memory::free(), HOST_SHARE, bytes_per_learner, most)
 }
 
 /// Cuts a cohort into shards of at most `shard` learners and uploads them.
@@ -145,12 +153,12 @@ pub fn upload(device: &Device, cohort: &Cohort, shard: usize) -> Result<Vec<Shar
     // Kernels count words in 32 bits, and a dispatch counts workgroups in 16.
     let most = (largest.min(u64::from(u32::MAX)) / widest).min(u64::from(super::governor::GROUPS)) as usize;
     if most == 0 {
-        return Err(too_large(format!("one learner takes a buffer of {widest} bytes, a buffer holds {largest}")));
+        return Err(BackendError::NoRoom { bytes: widest, room: largest });
     }
     if is_software(&device.info) {
         let needed = bytes(cohort);
         // Software adapters take memory that is not there and fail later, by signal.
-        if let Some(free) = free_memory()
+        if let Some(free) = memory::free()
             && needed + SPARE > free
         {
             let (needed, free) = (needed >> 20, free >> 20);
@@ -172,12 +180,4 @@ pub fn upload(device: &Device, cohort: &Cohort, shard: usize) -> Result<Vec<Shar
 fn bytes(cohort: &Cohort) -> u64 {
     let words = cohort.nets.len() + cohort.lessons.len() + cohort.rows.len() + cohort.shared.bank.len();
     (4 * words + size_of_val(&cohort.settings[..]) + size_of_val(&cohort.cursors[..])) as u64
-}
-
-/// Bytes of memory that are free on this machine, where that can be told.
-fn free_memory() -> Option<u64> {
-    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
-    let line = text.lines().find(|line| line.starts_with("MemAvailable:"))?;
-    let kibibytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
-    Some(kibibytes << 10)
 }

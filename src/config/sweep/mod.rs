@@ -1,0 +1,140 @@
+//! The table `sweep`: keys of the config that differ between points, and the values that they take there.
+//!
+//! An axis is named as its key is everywhere else, and lies over everything, an arm's own table included:
+//!
+//! ```toml
+//! [sweep]
+//! learning.gamma = [0.8, 0.9, 0.95]                                      # a list, also of words, flags or worlds
+//! robot.noise.sonar = { from = 0.0, to = 0.2, steps = 5 }                # evenly spread, both ends included
+//! learning.rate = { from = 1e-4, to = 1e-2, steps = 5, scale = "log" }   # evenly in the logarithm
+//! skill.recharge.applicable.dock = { values = [0.1, 0.2], label = "dock threshold" }
+//! ```
+//!
+//! `axis` reads one of them, `names` tells which keys may be one, `points` combines them, and `lay` puts a point's
+//! values into an arm's config.
+
+mod axis;
+mod lay;
+mod names;
+mod points;
+
+pub(super) use axis::Axis;
+pub(super) use lay::{has, lay};
+
+use super::error::ConfigError;
+use super::keys;
+use super::plan;
+use super::read::{Item, Section};
+use super::tree::{Node, Value};
+use super::worlds::Worlds;
+use names::Names;
+
+/// Most points of a sweep.
+pub(super) const MOST: usize = 1 << 16;
+
+/// A sweep as read.
+#[derive(Debug)]
+pub(super) struct Sweep<'a> {
+    /// How the points lie.
+    design: plan::Design,
+    /// What differs.
+    pub(super) axes: Vec<Axis<'a>>,
+    /// For each point, an index into the values of each axis.
+    pub(super) points: Vec<Vec<usize>>,
+    /// The points that are run, ascending.
+    pub(super) only: Vec<usize>,
+    /// Where it is written.
+    pub(super) item: Item<'a>,
+}
+
+/// Reads the table `sweep`, if there is one. `base` is the complete config without arms.
+pub(super) fn read<'a>(node: Option<&'a Node>, base: &Node, run_seed: u32) -> Result<Option<Sweep<'a>>, ConfigError> {
+    let Some(node) = node else { return Ok(None) };
+    let item = Item { name: "sweep".to_owned(), node };
+    let section = Section(item.table()?);
+    let design = match section.0.optional(keys::SWEEP_DESIGN.name()) {
+        None => plan::Design::Grid,
+        Some(item) if item.choice("designs", &["grid", "random"])? == 0 => plan::Design::Grid,
+        Some(_) => plan::Design::Random,
+    };
+    let count = section.0.optional(keys::SWEEP_POINTS.name());
+    let only = section.0.optional(keys::SWEEP_ONLY.name());
+    let names = Names::new(base);
+    let mut axes: Vec<Axis<'a>> = Vec::new();
+    for (entry, item) in section.0.all() {
+        if !keys::ALL.iter().any(|key| key.path == format!("sweep.{}", entry.key)) {
+            axis::collect(entry, &item, &[], &names, &mut axes)?;
+        }
+    }
+    if let [first, ..] = &axes[..] {
+        let points = match (design, count) {
+            (plan::Design::Random, count) => points::random(&mut axes, &item, count.as_ref(), run_seed)?,
+            (plan::Design::Grid, Some(count)) => {
+                let hint = "a grid has all combinations; drop it, or set design = \"random\"";
+                return Err(count.error("`sweep.points` is for random designs", hint));
+            }
+            (plan::Design::Grid, None) => points::grid(&axes, first.item.origin())?,
+        };
+        let only = match only {
+            Some(only) => points::chosen(&only, points.len())?,
+            None => (0..points.len()).collect(),
+        };
+        return Ok(Some(Sweep { design, axes, points, only, item }));
+    }
+    match only {
+        // `--point 0` is what a run without a sweep does.
+        Some(only) if count.is_none() && points::chosen(&only, 1)? == [0] => Ok(None),
+        _ => Err(item.error("the sweep has no axis", "name a key and its values, such as learning.gamma = [0.8, 0.9]")),
+    }
+}
+
+impl Sweep<'_> {
+    /// Values of a point, axis by axis.
+    pub(super) fn values(&self, point: &[usize]) -> Vec<&Node> {
+        self.axes.iter().zip(point).map(|(axis, value)| &axis.values[*value]).collect()
+    }
+
+    /// What the plan and the run folder say of it. Worlds have the names that they have in the folder.
+    pub(super) fn plan(&self, worlds: &mut Worlds<'_>) -> Result<plan::Sweep, ConfigError> {
+        let mut axes = Vec::new();
+        for axis in &self.axes {
+            let mut values = Vec::new();
+            for node in &axis.values {
+                values.push(match &node.value {
+                    Value::Text(_) if axis.is_world() => {
+                        let world = worlds.place(&Item { name: axis.key.clone(), node })?;
+                        plan::AxisValue::Text(worlds.placed[world].file.clone())
+                    }
+                    Value::Float(number) => plan::AxisValue::Number(*number),
+                    Value::Integer(number) => plan::AxisValue::Number(*number as f64),
+                    Value::Flag(flag) => plan::AxisValue::Text(flag.to_string()),
+                    Value::Text(text) => plan::AxisValue::Text(text.clone()),
+                    // An axis takes neither lists nor tables.
+                    Value::List(_) | Value::Table(_) => continue,
+                });
+            }
+            let (key, label, scale) = (axis.key.clone(), axis.label.clone(), axis.scale);
+            axes.push(plan::Axis { key, label, scale, values });
+        }
+        let value = |(axis, value): (&plan::Axis, &usize)| axis.values[*value].clone();
+        let points = self.points.iter().map(|point| axes.iter().zip(point).map(value).collect()).collect();
+        Ok(plan::Sweep { design: self.design, axes, points })
+    }
+}
+
+/// Gives the worlds on an axis the names that they have in a run folder.
+pub(super) fn rename(sweep: &mut Node, worlds: &mut Worlds<'_>) -> Result<(), ConfigError> {
+    let Value::Table(entries) = &mut sweep.value else { return Ok(()) };
+    for entry in entries.iter_mut().filter(|entry| entry.key == keys::WORLD.name()) {
+        let list = match entry.node.get(axis::VALUES) {
+            Some(_) => entry.node.get_mut(axis::VALUES),
+            None => Some(&mut entry.node),
+        };
+        let Some(Value::List(items)) = list.map(|list| &mut list.value) else { continue };
+        for node in items {
+            let index = worlds.place(&Item { name: keys::WORLD.name().to_owned(), node })?;
+            node.value = Value::Text(worlds.placed[index].file.clone());
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,20 @@
+//! The keys of `teacher`.
+
+use super::error::ConfigError;
+use super::keys;
+use super::plan::Teacher;
+use super::read::{Item, Section};
+
+/// Reads a complete `teacher` table.
+pub(super) fn read(item: &Item<'_>) -> Result<Teacher, ConfigError> {
+    let section = Section(item.table()?);
+    let teacher = Teacher {
+        bank: section.whole(&keys::TEACHER_BANK)?,
+        discount: section.number(&keys::TEACHER_DISCOUNT)?,
+        backward_cost: section.number(&keys::TEACHER_BACKWARD_COST)?,
+        collision_cost: section.number(&keys::TEACHER_COLLISION_COST)?,
+        episodes: section.whole(&keys::TEACHER_EPISODES)?,
+    };
+    section.0.finish()?;
+    Ok(teacher)
+}

@@ -1,0 +1,103 @@
+//! A number for what arms may have in common, so that thousands of them are sorted without comparing each with each.
+//!
+//! Different arms may have the same number: equality is always checked. What is left out here only costs time.
+
+use crate::config::plan::{Arm, Optimiser, Skill};
+use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+/// Sorts things into classes of equals, in the order in which each class shows up first. Equal things have equal
+/// fingerprints; `alike` decides.
+pub(super) fn classes(
+    count: usize,
+    fingerprint: impl Fn(usize) -> u64,
+    alike: impl Fn(usize, usize) -> bool,
+) -> Vec<Vec<usize>> {
+    let mut classes: Vec<Vec<usize>> = Vec::new();
+    let mut known: HashMap<u64, Vec<usize>> = HashMap::new();
+    for index in 0..count {
+        let like = known.entry(fingerprint(index)).or_default();
+        match like.iter().find(|class| alike(classes[**class][0], index)) {
+            Some(class) => classes[*class].push(index),
+            None => {
+                like.push(classes.len());
+                classes.push(vec![index]);
+            }
+        }
+    }
+    classes
+}
+
+/// Of the tasks of an arm's skills, whatever they are learned with.
+pub(super) fn of_tasks(arm: &Arm) -> u64 {
+    let mut hasher = circumstances(arm);
+    for skill in &arm.skills {
+        task(skill, &mut hasher);
+    }
+    hasher.finish()
+}
+
+/// Of everything below an arm's root.
+pub(super) fn of_stem(arm: &Arm) -> u64 {
+    let mut hasher = circumstances(arm);
+    for skill in &arm.skills[..arm.skills.len() - 1] {
+        task(skill, &mut hasher);
+        numbers(skill, &mut hasher);
+    }
+    hasher.finish()
+}
+
+fn circumstances(arm: &Arm) -> DefaultHasher {
+    let mut hasher = DefaultHasher::new();
+    let (noise, robot, teacher) = (arm.noise, arm.robot, arm.teacher);
+    (arm.world, arm.skills.len(), noise.kind as u32, teacher.bank, teacher.episodes).hash(&mut hasher);
+    singles(&[noise.actuator, noise.sonar, noise.light, noise.compass], &mut hasher);
+    singles(&[robot.light_trace, robot.door_trace, robot.range_mean, robot.beside_near, robot.beside_far], &mut hasher);
+    singles(&[teacher.discount, teacher.backward_cost, teacher.collision_cost], &mut hasher);
+    hasher
+}
+
+fn task(skill: &Skill, hasher: &mut DefaultHasher) {
+    (&skill.name, skill.ends, skill.max_steps, skill.learning.shared_net).hash(hasher);
+    singles(&skill.reward, hasher);
+    for (region, share) in &skill.starts {
+        region.hash(hasher);
+        singles(&[*share], hasher);
+    }
+}
+
+fn numbers(skill: &Skill, hasher: &mut DefaultHasher) {
+    let learning = &skill.learning;
+    (skill.lessons, skill.trials, learning.hidden, learning.rate_trials, learning.replays, learning.memory)
+        .hash(hasher);
+    (learning.taught_passes, learning.taught_replays, learning.inverse_temperature_trials).hash(hasher);
+    let rate = match learning.optimiser {
+        Optimiser::Sgd { rate, momentum } => [rate, momentum, 0.0, 0.0],
+        Optimiser::Adam { rate, beta1, beta2, epsilon, .. } => [rate, beta1, beta2, epsilon],
+    };
+    singles(&rate, hasher);
+    singles(&[learning.gamma, learning.lambda, learning.init, learning.rate_end_share, learning.reward_scale], hasher);
+    singles(&[learning.target_limit, learning.policy_threshold, learning.mean_age, learning.advantage_scale], hasher);
+    singles(&[learning.inverse_temperature_start, learning.inverse_temperature_end, learning.inner_share], hasher);
+}
+
+/// Equal numbers are one: -0 counts as 0.
+fn singles(values: &[f32], hasher: &mut DefaultHasher) {
+    for value in values {
+        (value + 0.0).to_bits().hash(hasher);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equals_meet_and_strangers_with_one_fingerprint_do_not() {
+        let words = ["a", "b", "a", "c", "b", "a"];
+        let alike = |a: usize, b: usize| words[a] == words[b];
+        let expected = [vec![0, 2, 5], vec![1, 4], vec![3]];
+        assert_eq!(classes(6, |index| u64::from(words[index].as_bytes()[0]), alike), expected);
+        assert_eq!(classes(6, |_| 7, alike), expected);
+    }
+}

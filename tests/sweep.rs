@@ -1,0 +1,263 @@
+//! Runs of sweeps: every learner leaves what it would have left alone, and a dry run says what is to come.
+
+mod support;
+
+use skilltree::backend::cpu::CpuBackend;
+use skilltree::backend::{Backend, BackendError};
+use skilltree::record::sweep::{self, AxisValue, read_sweep};
+use skilltree::record::tables::{EVALUATIONS, TRIALS, read_evaluations, read_trials};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+use support::{skilltree, tiny, tree};
+use tempfile::TempDir;
+
+/// Two arms of one skill over two axes, one of which makes another teacher necessary.
+const DOCKING: [&str; 8] = [
+    "--set",
+    "arms=['taught-adam', 'untaught-sgd']",
+    "--set",
+    "sweep.skill.dock.trials=[4, 7]",
+    "--set",
+    "sweep.robot.noise.sonar={from=0.0, to=0.2, steps=2, label='noise'}",
+    "--seeds",
+    "3..5",
+];
+/// A tree of skills: an axis of the root, which shares what is below, and one of a skill below.
+const TREE: [&str; 10] = [
+    "--set",
+    "arms=['persistent']",
+    "--set",
+    "sweep.skill.top.applicable.dock=[-0.1, 0.2]",
+    "--set",
+    "sweep.skill.pass.learning.rate=[0.1, 0.2]",
+    "--set",
+    "teacher.episodes=2",
+    "--seeds",
+    "0..2",
+];
+
+/// A run of `tests/support/tree.toml` on the CPU.
+fn trees(out: &Path, more: &[&str]) -> Command {
+    let mut command = skilltree(Path::new(env!("CARGO_MANIFEST_DIR")));
+    command.args(["run", "tests/support/tree.toml", "--backend", "cpu", "--out"]).arg(out).args(TREE).args(more);
+    command
+}
+
+fn docking(out: &Path, more: &[&str]) -> Command {
+    let mut command = tiny(out, &DOCKING);
+    command.args(more);
+    command
+}
+
+/// What a command says on standard error; it must succeed.
+#[track_caller]
+fn succeeds(mut command: Command) -> String {
+    let output = command.output().expect("the program");
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{said}");
+    said
+}
+
+/// Every file but those that say how and where the run was carried out.
+fn results(out: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut files = tree(out);
+    for name in ["manifest.json", "report.html", ".lock", ".skilltree"] {
+        assert!(files.remove(name).is_some(), "no {name}");
+    }
+    files
+}
+
+/// A learner as the tables name it: arm, point, seed.
+type Who = (String, u32, u32);
+
+/// All rows of both tables, by learner, numbers to the last bit; those of planners have no learner and are left out.
+fn rows(out: &Path) -> BTreeMap<Who, Vec<String>> {
+    let mut found: BTreeMap<Who, Vec<String>> = BTreeMap::new();
+    let (names, trials) = read_trials(&out.join(TRIALS)).expect("trials");
+    for mut row in trials {
+        let (arm, skill) = (names.arms[row.arm as usize].clone(), &names.skills[row.skill as usize]);
+        (row.arm, row.skill) = (0, 0);
+        let text = format!("{skill} {} {row:?}", row.reward.to_bits());
+        found.entry((arm, row.point, row.seed)).or_default().push(text);
+    }
+    let (names, tests) = read_evaluations(&out.join(EVALUATIONS)).expect("tests");
+    for mut row in tests {
+        let arm = names.arms[row.arm as usize].clone();
+        let words = (&names.skills[row.skill as usize], &names.rooms[row.room as usize], row.reward.to_bits());
+        (row.arm, row.skill, row.room) = (0, 0, 0);
+        if !arm.starts_with("planner") {
+            found.entry((arm, row.point, row.seed)).or_default().push(format!("{words:?} {row:?}"));
+        }
+    }
+    found
+}
+
+fn nets(out: &Path, (arm, point, seed): &Who) -> Vec<u8> {
+    fs::read(out.join(format!("skills/{arm}-p{point}-{seed}.safetensors"))).expect("nets")
+}
+
+fn file_count(out: &Path) -> usize {
+    fs::read_dir(out.join("skills")).expect("nets").count()
+}
+
+/// Runs a whole sweep, and each of some learners alone.
+fn check_alone(run: fn(&Path, &[&str]) -> Command, learners: usize, alone: &[(&str, u32, u32)]) -> TempDir {
+    let dir = TempDir::new().expect("a folder");
+    let all = dir.path().join("all");
+    succeeds(run(&all, &[]));
+    let expected = rows(&all);
+    assert_eq!((expected.len(), file_count(&all)), (learners, learners));
+    for (number, (arm, point, seed)) in alone.iter().enumerate() {
+        let out = dir.path().join(number.to_string());
+        let (point_text, seed_text) = (point.to_string(), seed.to_string());
+        succeeds(run(&out, &["--arm", arm, "--point", &point_text, "--seeds", &seed_text]));
+        let who = ((*arm).to_owned(), *point, *seed);
+        let found = rows(&out);
+        assert_eq!(found.keys().collect::<Vec<_>>(), [&who]);
+        assert_eq!(found[&who], expected[&who], "{who:?}");
+        assert!(nets(&out, &who) == nets(&all, &who), "{who:?}");
+        assert_eq!(file_count(&out), 1);
+        assert_eq!(fs::read(out.join(sweep::FILE)).ok(), fs::read(all.join(sweep::FILE)).ok());
+    }
+    // No two learners are the same after all.
+    let distinct: BTreeSet<Vec<u8>> = expected.keys().map(|who| nets(&all, who)).collect();
+    assert_eq!(distinct.len(), learners);
+    dir
+}
+
+#[test]
+fn a_learner_alone_is_the_learner_in_the_sweep() {
+    let dir = check_alone(docking, 2 * 4 * 2, &[("taught-adam", 2, 3), ("untaught-sgd", 1, 4)]);
+    let all = dir.path().join("all");
+    let text = fs::read(all.join(sweep::FILE)).expect("the sweep");
+    let sweep = read_sweep(&text, Path::new("sweep.json")).expect("a sweep");
+    let number = |value| AxisValue::Number(value);
+    let points = [[4.0, 0.0], [4.0, 0.2], [7.0, 0.0], [7.0, 0.2]].map(|point| point.map(number).to_vec());
+    let axes: Vec<_> = sweep.axes.iter().map(|axis| (axis.key.as_str(), axis.label.as_str())).collect();
+    assert_eq!(axes, [("skill.dock.trials", "skill.dock.trials"), ("robot.noise.sonar", "noise")]);
+    assert_eq!(sweep.points, points);
+    // The tables mean the same points: the number of trials shows it.
+    let (names, trials) = read_trials(&all.join(TRIALS)).expect("trials");
+    let place = |row: &skilltree::record::TrialRow| (row.arm, row.point, row.seed);
+    assert!(trials.is_sorted_by_key(place), "rows are sorted by arm, point and seed");
+    assert_eq!(names.arms, ["taught-adam", "untaught-sgd"]);
+    for point in 0..4 {
+        let own = trials.iter().filter(|row| row.point == point && !row.taught && (row.arm, row.seed) == (1, 3));
+        assert_eq!(own.count(), [4, 4, 7, 7][point as usize], "point {point}");
+    }
+    // Two levels of noise are two tasks of the planner, each tested at the point where it first comes up.
+    let (names, tests) = read_evaluations(&all.join(EVALUATIONS)).expect("tests");
+    let bounds: BTreeSet<(&str, u32)> = tests
+        .iter()
+        .map(|row| (names.arms[row.arm as usize].as_str(), row.point))
+        .filter(|(arm, _)| arm.starts_with("planner"))
+        .collect();
+    assert_eq!(bounds, BTreeSet::from([("planner", 0), ("planner", 1)]));
+}
+
+#[test]
+fn branches_of_a_swept_tree_are_what_they_are_alone() {
+    check_alone(trees, 4 * 2, &[("persistent", 1, 1), ("persistent", 2, 0)]);
+}
+
+#[test]
+fn no_split_and_no_order_changes_a_byte() {
+    let dir = TempDir::new().expect("a folder");
+    for (name, run) in [("docking", docking as fn(&Path, &[&str]) -> Command), ("tree", trees)] {
+        let whole = dir.path().join(name);
+        succeeds(run(&whole, &[]));
+        let expected = results(&whole);
+        assert!(expected.contains_key(sweep::FILE) && expected.keys().any(|name| name.starts_with("skills/")));
+        for (number, way) in [
+            &["--cohort", "1", "--threads", "1"][..],
+            &["--cohort", "3", "--quanta", "37"],
+            &["--cohort", "100", "--threads", "3"],
+        ]
+        .iter()
+        .enumerate()
+        {
+            let out = dir.path().join(format!("{name}-{number}"));
+            succeeds(run(&out, way));
+            let found = results(&out);
+            let differs: Vec<_> = expected.keys().filter(|name| found.get(*name) != expected.get(*name)).collect();
+            assert!(found.len() == expected.len() && differs.is_empty(), "{name} {way:?}: {differs:?}");
+        }
+        // The resolved config in the run folder gives the run again.
+        let out = dir.path().join(format!("{name}-again"));
+        let mut again = skilltree(dir.path());
+        again.args(["run", &format!("{name}/config.toml"), "--backend", "cpu", "--out"]).arg(&out);
+        succeeds(again);
+        let found = results(&out);
+        let differs: Vec<_> = expected.keys().filter(|name| found.get(*name) != expected.get(*name)).collect();
+        assert!(found.len() == expected.len() && differs.is_empty(), "{name}, resolved: {differs:?}");
+    }
+}
+
+#[test]
+fn a_dry_run_tells_and_writes_nothing() {
+    let dir = TempDir::new().expect("a folder");
+    let out = dir.path().join("new");
+    let said = succeeds(docking(&out, &["--dry-run", "--cohort", "4"]));
+    for words in [
+        "sweep:    4 points: skill.dock.trials (2 values), noise (2 values)",
+        "learners: 16 (2 arms x 4 points x 2 seeds)\n",
+        "for 4 learners in the largest of 4 cohorts",
+        "disk:     about ",
+        "backend:  cpu",
+        "time:     ",
+        "by estimate",
+    ] {
+        assert!(said.contains(words), "{words}\n{said}");
+    }
+    assert!(!out.exists(), "{said}");
+    let said = succeeds(trees(&out, &["--dry-run", "--point", "3", "--seeds", "1"]));
+    assert!(said.contains("learners: 1 (1 arm x 1 point x 1 seed)\n"), "{said}");
+    let said = succeeds(trees(&out, &["--dry-run"]));
+    let words = "learners: 8 (1 arm x 4 points x 2 seeds); everything below the roots is trained 4 times";
+    assert!(said.contains(words), "{said}");
+    assert!(!out.exists() && tree(dir.path()).is_empty(), "{said}");
+    // A run says the same before it begins, and what it promised to write is about what it wrote.
+    let said = succeeds(docking(&out, &[]));
+    assert!(said.contains("time:     ") && said.contains("learners: 16 ("), "{said}");
+    let promised = said.lines().find_map(|line| line.strip_prefix("disk:     about ")).expect("a promise");
+    let number: f64 = promised.split(' ').next().and_then(|number| number.parse().ok()).expect("a number");
+    let promised = number * if promised.contains("MB") { 1e6 } else { 1e3 };
+    let written: usize = results(&out)
+        .iter()
+        .filter(|(name, _)| name.starts_with("skills/") || name.ends_with(".parquet"))
+        .map(|(_, bytes)| bytes.len())
+        .sum();
+    assert!((0.5..2.0).contains(&(promised / written as f64)), "{promised} promised, {written} written");
+}
+
+#[test]
+fn points_and_arms_that_are_not_there_are_refused() {
+    let dir = TempDir::new().expect("a folder");
+    let out = dir.path().join("new");
+    for (more, says) in [
+        (&["--point", "4"][..], &["--point 4", "there is no point 4", "numbered from 0 to 3"][..]),
+        (&["--point", "x"], &["--point", "x"]),
+        (&["--arm", "taught-adm"], &["--arm taught-adm", "did you mean `taught-adam`?"]),
+        (&["--set", "sweep.skill.dock.trials=[1, 'x']"], &["--set sweep.skill.dock.trials", "whole number"]),
+    ] {
+        let output = docking(&out, more).output().expect("the program");
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{more:?} {said}");
+        assert!(says.iter().all(|words| said.contains(words)), "{more:?} {said}");
+        assert!(!out.exists());
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_learner_that_fits_no_memory_is_refused() {
+    let backend = CpuBackend::new(1, None).expect("a thread");
+    assert_eq!(backend.cohort_size(1 << 10).ok(), Some(32));
+    let refused = backend.cohort_size(1 << 60);
+    assert!(
+        matches!(refused, Err(BackendError::NoRoom { bytes, room }) if bytes == 1 << 60 && room > 0),
+        "{refused:?}"
+    );
+}
