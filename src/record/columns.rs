@@ -1,6 +1,7 @@
 //! Columns of a table, to and from Parquet. Knows nothing of what they mean.
 
 use super::{FORMAT, RecordError};
+use bytes::Bytes;
 use parquet::basic::Compression;
 use parquet::column::reader::get_typed_column_reader;
 use parquet::column::writer::ColumnWriter;
@@ -13,7 +14,6 @@ use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::parser::parse_message_type;
 use parquet::schema::types::Type;
 use std::collections::HashMap;
-use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -100,16 +100,15 @@ pub(super) struct Table<'path> {
     /// Every column has this many values.
     pub(super) rows: usize,
     path: &'path Path,
-    reader: SerializedFileReader<File>,
+    reader: SerializedFileReader<Bytes>,
 }
 
 impl<'path> Table<'path> {
-    /// Opens a file that has exactly the columns of the schema.
-    pub(super) fn read(path: &'path Path, schema: &str) -> Result<Self, RecordError> {
+    /// Opens a file's content that has exactly the columns of the schema; `path` is only for messages.
+    pub(super) fn read(file: Vec<u8>, path: &'path Path, schema: &str) -> Result<Self, RecordError> {
         let damaged = |error: ParquetError| RecordError::damaged(path, error.to_string());
-        let file = File::open(path).map_err(RecordError::unreadable(path))?;
-        let bytes = file.metadata().map_err(RecordError::unreadable(path))?.len();
-        let reader = SerializedFileReader::new(file).map_err(damaged)?;
+        let bytes = file.len() as u64;
+        let reader = SerializedFileReader::new(Bytes::from(file)).map_err(damaged)?;
         check_schema(path, reader.metadata(), &parse_message_type(schema).map_err(damaged)?)?;
         check_format(path, reader.metadata())?;
         let rows = u64::try_from(reader.metadata().file_metadata().num_rows())
