@@ -47,6 +47,26 @@ pub fn sync_folder(disk: &dyn Disk, folder: &Path) -> Result<(), RecordError> {
     disk.sync_folder(folder).map_err(|source| RecordError::DurabilityUnknown { path: folder.into(), source })
 }
 
+/// Makes a folder, and those above it, that outlives a power cut as the files in it do.
+///
+/// # Errors
+/// [`RecordError::Unreadable`], [`RecordError::NotCommitted`], or [`RecordError::DurabilityUnknown`] once it is there.
+pub fn make_folder(disk: &dyn Disk, folder: &Path) -> Result<(), RecordError> {
+    let mut parents = Vec::new();
+    let mut new = folder;
+    while disk.kind(new).map_err(RecordError::unreadable(new))?.is_none() {
+        let parent = folder_of(new);
+        parents.push(parent);
+        // A relative path ends in the working folder, which is there.
+        if parent == Path::new(".") {
+            break;
+        }
+        new = parent;
+    }
+    disk.make_folder(folder).map_err(|source| RecordError::NotCommitted { path: folder.into(), source })?;
+    parents.into_iter().rev().try_for_each(|parent| sync_folder(disk, parent))
+}
+
 /// Whether a file name is that of a temporary file of ours.
 pub fn is_temporary(name: &str) -> bool {
     name.starts_with('.') && name.ends_with(TEMPORARY)

@@ -13,9 +13,11 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::parser::parse_message_type;
 use parquet::schema::types::Type;
+use std::cell::Cell;
 use std::collections::HashMap;
+use std::panic::{self, AssertUnwindSafe};
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, Once};
 
 /// Rows written together; bounds the memory that the copies of the columns take.
 pub(super) const ROWS_PER_GROUP: usize = 1 << 20;
@@ -224,10 +226,27 @@ fn check_format(path: &Path, metadata: &ParquetMetaData) -> Result<(), RecordErr
     Err(RecordError::Format { path: path.into(), found, known: FORMAT })
 }
 
+thread_local! {
+    /// Whether this thread is within [`guarded`].
+    static GUARDED: Cell<bool> = const { Cell::new(false) };
+}
+
 /// Turns a panic of the parquet crate into an error: it asserts things that a damaged file can break (in 60.1.0 the
 /// sign of offsets and the presence of dictionaries). Files of a run folder have passed their hash before.
 pub(super) fn guarded<T>(path: &Path, read: impl FnOnce() -> Result<T, RecordError>) -> Result<T, RecordError> {
+    static HOOK: Once = Once::new();
+    HOOK.call_once(|| {
+        // The error says it all: a message about a panic before it would only alarm.
+        let usual = panic::take_hook();
+        panic::set_hook(Box::new(move |info| {
+            if !GUARDED.get() {
+                usual(info);
+            }
+        }));
+    });
+    GUARDED.set(true);
     // Nothing outlives a panic here: the reader and all columns are dropped with it.
-    std::panic::catch_unwind(std::panic::AssertUnwindSafe(read))
-        .unwrap_or_else(|_| Err(RecordError::damaged(path, "not a Parquet file that can be decoded")))
+    let outcome = panic::catch_unwind(AssertUnwindSafe(read));
+    GUARDED.set(false);
+    outcome.unwrap_or_else(|_| Err(RecordError::damaged(path, "not a Parquet file that can be decoded")))
 }

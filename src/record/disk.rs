@@ -2,6 +2,7 @@
 //!
 //! A method is one request to the operating system, or a few that fail as one. Nothing here knows what a run folder is.
 
+use std::any::Any;
 use std::ffi::OsString;
 use std::fmt::Debug;
 use std::fs::{self, File};
@@ -20,7 +21,7 @@ pub enum Kind {
 }
 
 /// A lock that is held until it is dropped.
-pub type Lock = File;
+pub type Lock = Box<dyn Any + Send + Sync>;
 
 /// A file that is being written.
 pub trait Writing: Write {
@@ -162,6 +163,6 @@ impl Disk for FileSystem {
     fn lock(&self, path: &Path) -> Result<Lock, TryLockError> {
         let file = File::options().create(true).append(true).open(path).map_err(TryLockError::Error)?;
         file.try_lock()?;
-        Ok(file)
+        Ok(Box::new(file))
     }
 }

@@ -66,7 +66,7 @@ impl RunFolder {
         let on = &*disk;
         let given: Vec<(&str, &str)> = [(CONFIG, config_text)].iter().chain(worlds).copied().collect();
         check_names(&given)?;
-        on.make_folder(dir).map_err(|source| RecordError::Unwritable { path: dir.into(), source })?;
+        make_run_folder(on, dir)?;
         refuse_foreign(on, dir)?;
         let lock = lock(on, dir)?;
         // Once more under the lock: another process may have filled the folder in between.
@@ -85,7 +85,7 @@ impl RunFolder {
                 Some(bytes) if bytes == text.as_bytes() => {}
                 Some(_) => return Err(RecordError::OtherExperiment { path: dir.into(), file: (*name).to_owned() }),
                 None if started => return Err(RecordError::damaged(&path, "missing, although results exist")),
-                None => write_below(on, dir, &path, text.as_bytes())?,
+                None => write_below(on, &path, text.as_bytes())?,
             }
         }
         let given = given.iter().map(|(name, _)| (*name).to_owned()).collect();
@@ -128,7 +128,7 @@ impl RunFolder {
             return Err(RecordError::invalid(name, "the run is complete and takes no more parts"));
         }
         let parts = self.dir.join(PARTS);
-        make_below(&*self.disk, &self.dir, &parts)?;
+        atomic::make_folder(&*self.disk, &parts)?;
         let mut bytes = Vec::with_capacity(PART_HEADER + content.len());
         bytes.extend_from_slice(PART_MAGIC);
         bytes.extend_from_slice(&(content.len() as u64).to_le_bytes());
@@ -183,8 +183,7 @@ impl RunFolder {
             }
             let path = self.dir.join(&name);
             if let Some(folder) = path.parent().filter(|folder| !folders.contains(*folder)) {
-                let failed = |source| RecordError::NotCommitted { path: folder.into(), source };
-                disk.make_folder(folder).map_err(failed)?;
+                atomic::make_folder(disk, folder)?;
                 atomic::remove_leftovers(disk, folder)?;
                 folders.insert(folder.into());
             }
@@ -245,21 +244,20 @@ fn check_names(given: &[(&str, &str)]) -> Result<(), RecordError> {
     Ok(())
 }
 
-/// Writes a file, and the folder in `dir` that holds it if there is none.
-fn write_below(disk: &dyn Disk, dir: &Path, path: &Path, bytes: &[u8]) -> Result<(), RecordError> {
-    if let Some(folder) = path.parent() {
-        make_below(disk, dir, folder)?;
-    }
-    atomic::write(disk, path, bytes)
+/// Makes the folder itself; what keeps it from being made, such as a file in its place, is a matter of `--out`.
+fn make_run_folder(disk: &dyn Disk, dir: &Path) -> Result<(), RecordError> {
+    atomic::make_folder(disk, dir).map_err(|error| match error {
+        RecordError::NotCommitted { path, source } => RecordError::Unwritable { path, source },
+        other => other,
+    })
 }
 
-/// Makes a folder in `dir` that outlives a power cut as the files in it do.
-fn make_below(disk: &dyn Disk, dir: &Path, folder: &Path) -> Result<(), RecordError> {
-    if exists(disk, folder)? {
-        return Ok(());
+/// Writes a file, and the folder that holds it if there is none.
+fn write_below(disk: &dyn Disk, path: &Path, bytes: &[u8]) -> Result<(), RecordError> {
+    if let Some(folder) = path.parent() {
+        atomic::make_folder(disk, folder)?;
     }
-    disk.make_folder(folder).map_err(|source| RecordError::NotCommitted { path: folder.into(), source })?;
-    atomic::sync_folder(disk, dir)
+    atomic::write(disk, path, bytes)
 }
 
 fn exists(disk: &dyn Disk, path: &Path) -> Result<bool, RecordError> {

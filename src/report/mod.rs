@@ -73,7 +73,10 @@ pub fn write_on(disk: Arc<dyn Disk>, dir: &Path) -> Result<Vec<PathBuf>, ReportE
     let page = page::render(&run, &results, &drawings)?;
 
     let folder = dir.join(FIGURES);
-    disk.make_folder(&folder).map_err(|source| RecordError::NotCommitted { path: folder.clone(), source })?;
+    atomic::make_folder(&*disk, &folder)?;
+    for folder in [dir, &folder] {
+        atomic::remove_leftovers(&*disk, folder)?;
+    }
     let mut written = Vec::new();
     let images: Result<Vec<_>, _> = drawings.par_iter().map(|figure| raster::png(&figure.svg)).collect();
     for (figure, image) in drawings.iter().zip(images?) {
