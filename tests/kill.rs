@@ -20,7 +20,7 @@ const MORE: [&str; 8] = [
     "--set",
     "arms=['taught-adam', 'taught-sgd']",
     "--set",
-    "skill.dock.trials=40",
+    "skill.dock.trials=10",
     "--cohort",
     "1",
 ];

@@ -24,7 +24,7 @@ pub enum Kind {
 pub type Lock = Box<dyn Any + Send + Sync>;
 
 /// A file that is being written.
-pub trait Writing: Write {
+pub trait Writing: Write + Send {
     /// Returns once the content would survive a power cut.
     ///
     /// # Errors
