@@ -1,9 +1,10 @@
 //! Columns of a table, to and from Parquet. Knows nothing of what they mean.
 
+use super::pages::Pages;
 use super::{FORMAT, RecordError};
 use bytes::Bytes;
 use parquet::basic::Compression;
-use parquet::column::reader::get_typed_column_reader;
+use parquet::column::reader::{get_column_reader, get_typed_column_reader};
 use parquet::column::writer::ColumnWriter;
 use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DataType, DoubleType, FloatType, Int32Type};
 use parquet::errors::ParquetError;
@@ -161,9 +162,11 @@ impl<'path> Table<'path> {
         let mut values = Vec::new();
         let mut batch = Vec::with_capacity(BATCH);
         for group in 0..self.reader.num_row_groups() {
-            let from = self.reader.get_row_group(group).and_then(|group| group.get_column_reader(column));
+            let pages = self.reader.get_row_group(group).and_then(|group| group.get_column_page_reader(column));
+            let kind = self.reader.metadata().file_metadata().schema_descr().column(column);
+            let from = get_column_reader(kind, Box::new(Pages(pages.map_err(damaged)?)));
             // The schema check has settled the type, so this cannot meet another.
-            let mut from = get_typed_column_reader::<D>(from.map_err(damaged)?);
+            let mut from = get_typed_column_reader::<D>(from);
             loop {
                 batch.clear();
                 let (read, _, _) = from.read_records(BATCH, None, None, &mut batch).map_err(damaged)?;

@@ -11,6 +11,7 @@ mod error;
 pub mod finished;
 pub mod folder;
 pub mod manifest;
+mod pages;
 pub mod places;
 pub mod tables;
 pub mod trajectories;

@@ -3,7 +3,7 @@
 //! `SKILLTREE_FUZZ_SECONDS` is the time for each reader, 2 if not set. Input number N is the same in every run: a
 //! finding's number, given as `SKILLTREE_FUZZ_FROM` with a short time, brings it back.
 
-use super::meter::{Execution, watch};
+use super::meter::{Execution, executed, watch};
 use super::mutate::Dice;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -12,8 +12,8 @@ use std::time::{Duration, Instant};
 
 /// An execution beyond this hangs.
 const PATIENCE: Duration = Duration::from_secs(1);
-/// No repetition helps an execution beyond this: the process ends and names it.
-const END_OF_PATIENCE: Duration = Duration::from_secs(60);
+/// An execution beyond this may never end: the process ends and names it. A busy machine is no excuse.
+const END_OF_PATIENCE: Duration = Duration::from_secs(600);
 /// What a reader may hold beside four times its input.
 const MEMORY: usize = 64 << 20;
 /// Different findings after which a campaign stops.
@@ -69,7 +69,7 @@ pub(crate) fn campaign(
             }
             current.store(number, Ordering::Relaxed);
             let input = make(&mut Dice::new(number));
-            if let Some(finding) = campaign.execute(&input, &mut read) {
+            if let Some(finding) = campaign.execute(number, &input, &mut read) {
                 if !campaign.findings.contains_key(&finding) {
                     let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("fuzz-{name}-{number}"));
                     std::fs::write(&file, &input).unwrap();
@@ -84,8 +84,13 @@ pub(crate) fn campaign(
 }
 
 impl Campaign {
-    fn execute(&mut self, input: &[u8], read: &mut impl FnMut(&[u8]) -> Result<bool, String>) -> Option<String> {
-        let Execution { outcome, bytes, mut time } = watch(|| read(input));
+    fn execute(
+        &mut self,
+        number: u64,
+        input: &[u8],
+        read: &mut impl FnMut(&[u8]) -> Result<bool, String>,
+    ) -> Option<String> {
+        let Execution { outcome, bytes, mut time } = watch(number, || read(input));
         self.inputs += 1;
         self.most = self.most.max(bytes);
         let accepted = match outcome {
@@ -94,11 +99,12 @@ impl Campaign {
             Ok(Ok(accepted)) => accepted,
         };
         self.accepted += u64::from(accepted);
-        // On a busy machine an execution may wait for its turn: the quickest of a few counts.
-        for _ in 0..4 {
-            if time > PATIENCE {
-                time = time.min(watch(|| read(input)).time);
-            }
+        if time > PATIENCE {
+            // Once more, now without the time in which the thread waited for its turn.
+            let before = executed();
+            let again = watch(number, || read(input)).time;
+            let busy = executed().zip(before).map_or(again, |(after, before)| after - before);
+            time = time.min(again).min(busy);
         }
         self.slowest = self.slowest.max(time);
         if time > PATIENCE {

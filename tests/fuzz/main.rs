@@ -58,7 +58,7 @@ fn faults_are_found() {
     assert!(wastes.contains("memory: more than 64 MB"), "{wastes}");
     let errs = found(|input| if input.is_empty() { Err("nothing is something".to_owned()) } else { Ok(true) });
     assert!(errs.contains("nothing is something"), "{errs}");
-    let sleeps = meter::watch(|| std::thread::sleep(std::time::Duration::from_millis(30)));
+    let sleeps = meter::watch(0, || std::thread::sleep(std::time::Duration::from_millis(30)));
     assert!(sleeps.time.as_millis() >= 30);
 }
 

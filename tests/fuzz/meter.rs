@@ -2,6 +2,7 @@
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::{Cell, RefCell};
+use std::io::Write;
 use std::panic::{self, AssertUnwindSafe};
 use std::sync::Once;
 use std::time::{Duration, Instant};
@@ -10,6 +11,7 @@ thread_local! {
     static HELD: Cell<isize> = const { Cell::new(0) };
     static PEAK: Cell<isize> = const { Cell::new(0) };
     static MEASURING: Cell<bool> = const { Cell::new(false) };
+    static NUMBER: Cell<u64> = const { Cell::new(0) };
     static PANIC: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
@@ -25,10 +27,19 @@ fn count(bytes: isize) {
     PEAK.set(PEAK.get().max(held));
 }
 
+/// Most programs end when a request is refused: the number of the input is said before.
+fn refused(layout: Layout) -> bool {
+    let refused = MEASURING.get() && layout.size() > REFUSED;
+    if refused {
+        let _ = writeln!(std::io::stderr(), "input {} asks for {} bytes", NUMBER.get(), layout.size());
+    }
+    refused
+}
+
 // SAFETY: every request goes to the system's allocator as it is, or is refused.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        if MEASURING.get() && layout.size() > REFUSED {
+        if refused(layout) {
             return std::ptr::null_mut();
         }
         count(layout.size().cast_signed());
@@ -37,7 +48,7 @@ unsafe impl GlobalAlloc for Counting {
     }
 
     unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
-        if MEASURING.get() && layout.size() > REFUSED {
+        if refused(layout) {
             return std::ptr::null_mut();
         }
         count(layout.size().cast_signed());
@@ -64,8 +75,8 @@ pub(crate) struct Execution<T> {
     pub(crate) time: Duration,
 }
 
-/// Executes and watches. Panics print nothing.
-pub(crate) fn watch<T>(execute: impl FnOnce() -> T) -> Execution<T> {
+/// Executes and watches input `number`. Panics print nothing.
+pub(crate) fn watch<T>(number: u64, execute: impl FnOnce() -> T) -> Execution<T> {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {
         let usual = panic::take_hook();
@@ -77,6 +88,7 @@ pub(crate) fn watch<T>(execute: impl FnOnce() -> T) -> Execution<T> {
     let before = HELD.get();
     PEAK.set(before);
     PANIC.take();
+    NUMBER.set(number);
     MEASURING.set(true);
     let started = Instant::now();
     let outcome = panic::catch_unwind(AssertUnwindSafe(execute));
@@ -84,4 +96,11 @@ pub(crate) fn watch<T>(execute: impl FnOnce() -> T) -> Execution<T> {
     MEASURING.set(false);
     let bytes = (PEAK.get() - before).max(0).cast_unsigned();
     Execution { outcome: outcome.map_err(|_| PANIC.take()), bytes, time }
+}
+
+/// Time that this thread has been executed: on a busy machine it also waits for its turn, which no reader can help. None
+/// where the system does not tell.
+pub(crate) fn executed() -> Option<Duration> {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    Some(Duration::from_nanos(text.split_whitespace().next()?.parse().ok()?))
 }
