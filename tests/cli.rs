@@ -328,7 +328,7 @@ fn another_experiments_folder_is_left_alone() {
     fs::remove_dir(&config).unwrap();
     fs::write(&config, saved).unwrap();
     // Somebody is at work there.
-    let lock = skilltree::record::folder::lock(&run).unwrap();
+    let lock = skilltree::record::folder::lock(&skilltree::record::disk::FileSystem, &run).unwrap();
     desk.refuses(&line, 1, &["another skilltree process"]);
     desk.refuses(&["report", "run"], 1, &["another skilltree process"]);
     drop(lock);

@@ -182,3 +182,22 @@ fn only_the_gpu_backend_knows_wgpu() {
         assert!(gpu || named == 0, "src/{file} names wgpu or naga");
     }
 }
+
+/// Files that read something that is not of a run folder: what the user wrote, and the machine's memory.
+const READ_BY_THEMSELVES: &[&str] =
+    &["config/load.rs", "config/worlds.rs", "world/load.rs", "backend/gpu/shards.rs", "record/disk.rs"];
+
+/// Tests make each call on a disk fail: one that bypasses `record::disk` would escape them.
+#[test]
+fn run_folders_are_reached_through_the_disk_alone() {
+    let calls = ["fs::", "File::", ".exists()", ".is_file()", ".is_dir()", ".try_exists()", "read_dir("];
+    let mut found = BTreeSet::new();
+    for file in files(&root().join("src"), ".rs") {
+        let text = read(&root().join("src").join(&file));
+        let mut code = shipped(&text).lines().filter(|line| !line.trim_start().starts_with("//"));
+        if code.any(|line| calls.iter().any(|call| line.contains(call))) {
+            found.insert(file);
+        }
+    }
+    assert_eq!(found, READ_BY_THEMSELVES.iter().map(|file| file.to_string()).collect());
+}

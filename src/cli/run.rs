@@ -8,10 +8,10 @@ use crate::config::plan::Plan;
 use crate::config::{Overrides, load};
 use crate::experiment::group::groups;
 use crate::experiment::run::{Options, run as run_experiment};
+use crate::record::disk::{Disk, FileSystem};
 use crate::record::{Provenance, RunFolder, State, folder, tables};
 use crate::report;
 use std::collections::BTreeMap;
-use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::time::{Instant, SystemTime};
@@ -115,8 +115,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// Whether nothing is there yet: no folder, or an empty one.
 fn is_new(out: &Path) -> bool {
-    match fs::read_dir(out) {
-        Ok(mut entries) => entries.next().is_none(),
+    match FileSystem.list(out) {
+        Ok(names) => names.is_empty(),
         Err(error) => error.kind() == ErrorKind::NotFound,
     }
 }

@@ -107,7 +107,10 @@ impl LearnerResult {
     fn read(reader: &mut Reader<'_>) -> Result<Self, PartError> {
         let [arm, seed, failed, updates] = reader.words()?;
         let mut result = Self::new(LearnerId { arm: arm as usize, seed });
-        result.failed = failed == 1;
+        result.failed = match failed {
+            0 | 1 => failed == 1,
+            _ => return Err(PartError),
+        };
         result.updates = updates;
         let [tests] = reader.words()?;
         for _test in 0..tests {

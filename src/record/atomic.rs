@@ -1,8 +1,8 @@
 //! Writing a file so that a crash leaves either the old one or the new one.
 
 use super::RecordError;
-use std::fs::{self, File};
-use std::io::{self, Write};
+use super::disk::Disk;
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// Ends the name of every temporary file of ours, so that leftovers can be told from other people's files.
@@ -12,44 +12,59 @@ const TEMPORARY: &str = ".skilltree-tmp";
 ///
 /// # Errors
 /// [`RecordError::NotCommitted`] if the earlier state is intact, [`RecordError::DurabilityUnknown`] after the rename.
-pub fn write(path: &Path, bytes: &[u8]) -> Result<(), RecordError> {
-    place(path, bytes)?;
-    sync_folder(folder_of(path))
+pub fn write(disk: &dyn Disk, path: &Path, bytes: &[u8]) -> Result<(), RecordError> {
+    place(disk, path, bytes)?;
+    sync_folder(disk, folder_of(path))
 }
 
 /// As [`write()`], without the last fsync: call [`sync_folder`] once after a batch of files.
 ///
 /// # Errors
 /// [`RecordError::NotCommitted`]: the earlier state is intact.
-pub fn place(path: &Path, bytes: &[u8]) -> Result<(), RecordError> {
+pub fn place(disk: &dyn Disk, path: &Path, bytes: &[u8]) -> Result<(), RecordError> {
     let temporary = temporary_name(path);
-    let attempt = write_verified(&temporary, bytes).and_then(|()| fs::rename(&temporary, path));
+    let attempt = write_verified(disk, &temporary, bytes).and_then(|()| disk.rename(&temporary, path));
     attempt.map_err(|source| {
         // Best effort: a leftover is ignored by readers and removed by the next run.
-        let _ = fs::remove_file(&temporary);
+        let _ = disk.remove_file(&temporary);
         RecordError::NotCommitted { path: path.into(), source }
     })
 }
 
-fn write_verified(temporary: &Path, bytes: &[u8]) -> io::Result<()> {
-    let mut file = File::create(temporary)?;
+fn write_verified(disk: &dyn Disk, temporary: &Path, bytes: &[u8]) -> io::Result<()> {
+    let mut file = disk.create(temporary)?;
     file.write_all(bytes)?;
-    file.sync_all()?;
+    file.sync()?;
     drop(file);
-    if fs::read(temporary)? == bytes { Ok(()) } else { Err(io::Error::other("the file reads back differently")) }
+    if disk.read(temporary)? == bytes { Ok(()) } else { Err(io::Error::other("the file reads back differently")) }
 }
 
 /// Asks the disk to keep the folder's entries.
 ///
 /// # Errors
 /// [`RecordError::DurabilityUnknown`].
-pub fn sync_folder(folder: &Path) -> Result<(), RecordError> {
-    // Only Unix lets a folder be opened and flushed; elsewhere the rename itself is all there is.
-    if cfg!(unix) {
-        let synced = File::open(folder).and_then(|file| file.sync_all());
-        synced.map_err(|source| RecordError::DurabilityUnknown { path: folder.into(), source })?;
+pub fn sync_folder(disk: &dyn Disk, folder: &Path) -> Result<(), RecordError> {
+    disk.sync_folder(folder).map_err(|source| RecordError::DurabilityUnknown { path: folder.into(), source })
+}
+
+/// Makes a folder, and those above it, that outlives a power cut as the files in it do.
+///
+/// # Errors
+/// [`RecordError::Unreadable`], [`RecordError::NotCommitted`], or [`RecordError::DurabilityUnknown`] once it is there.
+pub fn make_folder(disk: &dyn Disk, folder: &Path) -> Result<(), RecordError> {
+    let mut parents = Vec::new();
+    let mut new = folder;
+    while disk.kind(new).map_err(RecordError::unreadable(new))?.is_none() {
+        let parent = folder_of(new);
+        parents.push(parent);
+        // A relative path ends in the working folder, which is there.
+        if parent == Path::new(".") {
+            break;
+        }
+        new = parent;
     }
-    Ok(())
+    disk.make_folder(folder).map_err(|source| RecordError::NotCommitted { path: folder.into(), source })?;
+    parents.into_iter().rev().try_for_each(|parent| sync_folder(disk, parent))
 }
 
 /// Whether a file name is that of a temporary file of ours.
@@ -61,10 +76,10 @@ pub fn is_temporary(name: &str) -> bool {
 ///
 /// # Errors
 /// [`RecordError::Unreadable`] if the folder cannot be listed. A leftover that cannot be removed does no harm.
-pub fn remove_leftovers(folder: &Path) -> Result<(), RecordError> {
-    for name in list(folder)? {
+pub fn remove_leftovers(disk: &dyn Disk, folder: &Path) -> Result<(), RecordError> {
+    for name in list(disk, folder)? {
         if is_temporary(&name) {
-            let _ = fs::remove_file(folder.join(name));
+            let _ = disk.remove_file(&folder.join(name));
         }
     }
     Ok(())
@@ -74,17 +89,26 @@ pub fn remove_leftovers(folder: &Path) -> Result<(), RecordError> {
 ///
 /// # Errors
 /// [`RecordError::Unreadable`].
-pub fn list(folder: &Path) -> Result<Vec<String>, RecordError> {
-    let entries = match fs::read_dir(folder) {
+pub fn list(disk: &dyn Disk, folder: &Path) -> Result<Vec<String>, RecordError> {
+    let names = match disk.list(folder) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
         other => other.map_err(RecordError::unreadable(folder))?,
     };
-    let mut names = Vec::new();
-    for entry in entries {
-        names.push(entry.map_err(RecordError::unreadable(folder))?.file_name().to_string_lossy().into_owned());
-    }
+    let mut names: Vec<String> = names.iter().map(|name| name.to_string_lossy().into_owned()).collect();
     names.sort();
     Ok(names)
+}
+
+/// The content of a file, or none if there is no such file.
+///
+/// # Errors
+/// [`RecordError::Unreadable`].
+pub fn read_if_there(disk: &dyn Disk, path: &Path) -> Result<Option<Vec<u8>>, RecordError> {
+    match disk.read(path) {
+        Ok(bytes) => Ok(Some(bytes)),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(source) => Err(RecordError::Unreadable { path: path.into(), source }),
+    }
 }
 
 /// The process number keeps two processes from writing the same temporary file.

@@ -1,8 +1,10 @@
 //! Columns of a table, to and from Parquet. Knows nothing of what they mean.
 
+use super::pages::Pages;
 use super::{FORMAT, RecordError};
+use bytes::Bytes;
 use parquet::basic::Compression;
-use parquet::column::reader::get_typed_column_reader;
+use parquet::column::reader::{get_column_reader, get_typed_column_reader};
 use parquet::column::writer::ColumnWriter;
 use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DataType, DoubleType, FloatType, Int32Type};
 use parquet::errors::ParquetError;
@@ -12,10 +14,11 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::parser::parse_message_type;
 use parquet::schema::types::Type;
+use std::cell::Cell;
 use std::collections::HashMap;
-use std::fs::File;
+use std::panic::{self, AssertUnwindSafe};
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, Once};
 
 /// Rows written together; bounds the memory that the copies of the columns take.
 pub(super) const ROWS_PER_GROUP: usize = 1 << 20;
@@ -100,16 +103,15 @@ pub(super) struct Table<'path> {
     /// Every column has this many values.
     pub(super) rows: usize,
     path: &'path Path,
-    reader: SerializedFileReader<File>,
+    reader: SerializedFileReader<Bytes>,
 }
 
 impl<'path> Table<'path> {
-    /// Opens a file that has exactly the columns of the schema.
-    pub(super) fn read(path: &'path Path, schema: &str) -> Result<Self, RecordError> {
+    /// Opens a file's content that has exactly the columns of the schema; `path` is only for messages.
+    pub(super) fn read(file: Vec<u8>, path: &'path Path, schema: &str) -> Result<Self, RecordError> {
         let damaged = |error: ParquetError| RecordError::damaged(path, error.to_string());
-        let file = File::open(path).map_err(RecordError::unreadable(path))?;
-        let bytes = file.metadata().map_err(RecordError::unreadable(path))?.len();
-        let reader = SerializedFileReader::new(file).map_err(damaged)?;
+        let bytes = file.len() as u64;
+        let reader = SerializedFileReader::new(Bytes::from(file)).map_err(damaged)?;
         check_schema(path, reader.metadata(), &parse_message_type(schema).map_err(damaged)?)?;
         check_format(path, reader.metadata())?;
         let rows = u64::try_from(reader.metadata().file_metadata().num_rows())
@@ -160,9 +162,11 @@ impl<'path> Table<'path> {
         let mut values = Vec::new();
         let mut batch = Vec::with_capacity(BATCH);
         for group in 0..self.reader.num_row_groups() {
-            let from = self.reader.get_row_group(group).and_then(|group| group.get_column_reader(column));
+            let pages = self.reader.get_row_group(group).and_then(|group| group.get_column_page_reader(column));
+            let kind = self.reader.metadata().file_metadata().schema_descr().column(column);
+            let from = get_column_reader(kind, Box::new(Pages(pages.map_err(damaged)?)));
             // The schema check has settled the type, so this cannot meet another.
-            let mut from = get_typed_column_reader::<D>(from.map_err(damaged)?);
+            let mut from = get_typed_column_reader::<D>(from);
             loop {
                 batch.clear();
                 let (read, _, _) = from.read_records(BATCH, None, None, &mut batch).map_err(damaged)?;
@@ -225,10 +229,27 @@ fn check_format(path: &Path, metadata: &ParquetMetaData) -> Result<(), RecordErr
     Err(RecordError::Format { path: path.into(), found, known: FORMAT })
 }
 
+thread_local! {
+    /// Whether this thread is within [`guarded`].
+    static GUARDED: Cell<bool> = const { Cell::new(false) };
+}
+
 /// Turns a panic of the parquet crate into an error: it asserts things that a damaged file can break (in 60.1.0 the
 /// sign of offsets and the presence of dictionaries). Files of a run folder have passed their hash before.
 pub(super) fn guarded<T>(path: &Path, read: impl FnOnce() -> Result<T, RecordError>) -> Result<T, RecordError> {
+    static HOOK: Once = Once::new();
+    HOOK.call_once(|| {
+        // The error says it all: a message about a panic before it would only alarm.
+        let usual = panic::take_hook();
+        panic::set_hook(Box::new(move |info| {
+            if !GUARDED.get() {
+                usual(info);
+            }
+        }));
+    });
+    GUARDED.set(true);
     // Nothing outlives a panic here: the reader and all columns are dropped with it.
-    std::panic::catch_unwind(std::panic::AssertUnwindSafe(read))
-        .unwrap_or_else(|_| Err(RecordError::damaged(path, "not a Parquet file that can be decoded")))
+    let outcome = panic::catch_unwind(AssertUnwindSafe(read));
+    GUARDED.set(false);
+    outcome.unwrap_or_else(|_| Err(RecordError::damaged(path, "not a Parquet file that can be decoded")))
 }

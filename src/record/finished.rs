@@ -1,15 +1,17 @@
 //! A complete run folder, verified and read only.
 
+use super::disk::{Disk, FileSystem, Kind};
 use super::folder::{CONFIG, WORLD};
 use super::manifest::FileDigest;
 use super::{Manifest, RecordError};
-use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// A run folder whose every file has the length and hash that its manifest states.
 #[derive(Debug, Clone)]
 pub struct FinishedRun {
+    disk: Arc<dyn Disk>,
     dir: PathBuf,
     manifest: Manifest,
     config: String,
@@ -23,23 +25,28 @@ impl FinishedRun {
     /// [`RecordError::NoRun`] or [`RecordError::Unfinished`] without a manifest, [`RecordError::Format`] for another layout, otherwise
     /// [`RecordError::Damaged`] or [`RecordError::Unreadable`] with the file that is missing, cut or altered.
     pub fn read(dir: &Path) -> Result<Self, RecordError> {
+        Self::read_on(Arc::new(FileSystem), dir)
+    }
+
+    /// As [`FinishedRun::read`], on a disk of the caller's.
+    ///
+    /// # Errors
+    /// As [`FinishedRun::read`].
+    pub fn read_on(disk: Arc<dyn Disk>, dir: &Path) -> Result<Self, RecordError> {
         let path = dir.join(Manifest::NAME);
-        let bytes = match fs::read(&path) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound && dir.join(CONFIG).exists() => {
-                return Err(RecordError::Unfinished { path: dir.into() });
-            }
+        let bytes = match disk.read(&path) {
             Err(error) if matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) => {
-                return Err(RecordError::NoRun { path: dir.into(), found: what_is(dir)? });
+                return Err(without_manifest(&*disk, dir)?);
             }
             other => other.map_err(RecordError::unreadable(&path))?,
         };
         let manifest = Manifest::parse(&bytes, &path)?;
         for (name, stated) in &manifest.files {
-            verify(&dir.join(name), stated)?;
+            verify(&dir.join(name), stated, |path| FileDigest::of_file(&*disk, path))?;
         }
-        let mut run = Self { dir: dir.into(), manifest, config: String::new(), world: String::new() };
-        run.config = run.text(CONFIG)?;
-        run.world = run.text(WORLD)?;
+        let mut run = Self { disk, dir: dir.into(), manifest, config: String::new(), world: String::new() };
+        run.config = run.required(CONFIG)?;
+        run.world = run.required(WORLD)?;
         Ok(run)
     }
 
@@ -68,30 +75,60 @@ impl FinishedRun {
         self.manifest.files.contains_key(name).then(|| self.dir.join(name))
     }
 
-    fn text(&self, name: &str) -> Result<String, RecordError> {
-        let path = self.dir.join(name);
-        if !self.manifest.files.contains_key(name) {
-            return Err(RecordError::damaged(&self.dir.join(Manifest::NAME), format!("does not list `{name}`")));
-        }
-        let bytes = fs::read(&path).map_err(RecordError::unreadable(&path))?;
-        String::from_utf8(bytes).map_err(|_| RecordError::damaged(&path, "not UTF-8"))
+    /// Content of a result file, or none if the run has no such file. What comes out has the hash that the manifest
+    /// states, whatever became of the file since the folder was opened.
+    ///
+    /// # Errors
+    /// [`RecordError::Damaged`] or [`RecordError::Unreadable`].
+    pub fn content(&self, name: &str) -> Result<Option<Vec<u8>>, RecordError> {
+        let Some(stated) = self.manifest.files.get(name) else { return Ok(None) };
+        let mut bytes = Vec::new();
+        verify(&self.dir.join(name), stated, |path| {
+            bytes = self.disk.read(path)?;
+            Ok(FileDigest::of(&bytes))
+        })?;
+        Ok(Some(bytes))
+    }
+
+    /// As [`FinishedRun::content`], for a file of text.
+    ///
+    /// # Errors
+    /// [`RecordError::Damaged`] or [`RecordError::Unreadable`].
+    pub fn text(&self, name: &str) -> Result<Option<String>, RecordError> {
+        let damaged = |_| RecordError::damaged(&self.dir.join(name), "not UTF-8");
+        self.content(name)?.map(|bytes| String::from_utf8(bytes).map_err(damaged)).transpose()
+    }
+
+    fn required(&self, name: &str) -> Result<String, RecordError> {
+        let unlisted = || RecordError::damaged(&self.dir.join(Manifest::NAME), format!("does not list `{name}`"));
+        self.text(name)?.ok_or_else(unlisted)
     }
 }
 
-/// What is where a run folder was expected, in brackets.
-fn what_is(path: &Path) -> Result<String, RecordError> {
-    Ok(match fs::metadata(path) {
-        Err(_) => " (there is no such folder)".to_owned(),
-        Ok(data) if !data.is_dir() => " (it is a file)".to_owned(),
-        Ok(_) => match super::atomic::list(path)?.first() {
+/// What to say of a folder without a manifest.
+fn without_manifest(disk: &dyn Disk, dir: &Path) -> Result<RecordError, RecordError> {
+    let config = dir.join(CONFIG);
+    if disk.kind(&config).map_err(RecordError::unreadable(&config))?.is_some() {
+        return Ok(RecordError::Unfinished { path: dir.into() });
+    }
+    let found = match disk.kind(dir).map_err(RecordError::unreadable(dir))? {
+        None => " (there is no such folder)".to_owned(),
+        Some(Kind::File) => " (it is a file)".to_owned(),
+        Some(Kind::Folder) => match super::atomic::list(disk, dir)?.first() {
             Some(name) => format!(" (it holds `{name}`, and no manifest.json)"),
             None => " (it is empty)".to_owned(),
         },
-    })
+    };
+    Ok(RecordError::NoRun { path: dir.into(), found })
 }
 
-fn verify(path: &Path, stated: &FileDigest) -> Result<(), RecordError> {
-    let found = match FileDigest::of_file(path) {
+/// Compares a file, digested by `digest`, with what the manifest states.
+fn verify(
+    path: &Path,
+    stated: &FileDigest,
+    digest: impl FnOnce(&Path) -> io::Result<FileDigest>,
+) -> Result<(), RecordError> {
+    let found = match digest(path) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
             return Err(RecordError::damaged(path, "missing, although the manifest lists it"));
         }

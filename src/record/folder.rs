@@ -1,11 +1,13 @@
 //! The run folder while a run writes to it.
 
+use super::atomic::read_if_there;
+use super::disk::{Disk, FileSystem, Lock, TryLockError};
 use super::manifest::{FileDigest, is_plain};
 use super::{FORMAT, Manifest, Provenance, RecordError, atomic};
 use sha2::{Digest, Sha256};
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Name of the resolved config in a run folder.
 pub const CONFIG: &str = "config.toml";
@@ -32,11 +34,12 @@ pub enum State {
 /// A run folder, locked against other writers until it is dropped or finished.
 #[derive(Debug)]
 pub struct RunFolder {
+    disk: Arc<dyn Disk>,
     dir: PathBuf,
     /// Names of the config and of the world files.
     given: Vec<String>,
     state: State,
-    _lock: File,
+    _lock: Lock,
 }
 
 impl RunFolder {
@@ -47,33 +50,48 @@ impl RunFolder {
     /// If the folder cannot be written, is in use, holds anything else than a run of exactly this config and these
     /// worlds, or is complete but fails verification. Nothing is overwritten.
     pub fn open(dir: &Path, config_text: &str, worlds: &[(&str, &str)]) -> Result<Self, RecordError> {
+        Self::open_on(Arc::new(FileSystem), dir, config_text, worlds)
+    }
+
+    /// As [`RunFolder::open`], on a disk of the caller's; all that is done with the folder goes through it.
+    ///
+    /// # Errors
+    /// As [`RunFolder::open`].
+    pub fn open_on(
+        disk: Arc<dyn Disk>,
+        dir: &Path,
+        config_text: &str,
+        worlds: &[(&str, &str)],
+    ) -> Result<Self, RecordError> {
+        let on = &*disk;
         let given: Vec<(&str, &str)> = [(CONFIG, config_text)].iter().chain(worlds).copied().collect();
         check_names(&given)?;
-        fs::create_dir_all(dir).map_err(|source| RecordError::Unwritable { path: dir.into(), source })?;
-        refuse_foreign(dir)?;
-        let lock = lock(dir)?;
+        make_run_folder(on, dir)?;
+        refuse_foreign(on, dir)?;
+        let lock = lock(on, dir)?;
         // Once more under the lock: another process may have filled the folder in between.
-        refuse_foreign(dir)?;
+        refuse_foreign(on, dir)?;
         let folders: BTreeSet<PathBuf> =
             given.iter().filter_map(|(name, _)| Some(dir.join(name).parent()?.into())).collect();
         for folder in folders.iter().chain([&dir.join(PARTS)]) {
-            atomic::remove_leftovers(folder)?;
+            atomic::remove_leftovers(on, folder)?;
         }
-        let started = !part_names(dir)?.is_empty() || dir.join(Manifest::NAME).exists();
-        atomic_once(&dir.join(MARKER), format!("skilltree run folder, format {FORMAT}\n").as_bytes())?;
+        let complete = exists(on, &dir.join(Manifest::NAME))?;
+        let started = complete || !part_names(on, dir)?.is_empty();
+        atomic_once(on, &dir.join(MARKER), format!("skilltree run folder, format {FORMAT}\n").as_bytes())?;
         for (name, text) in &given {
             let path = dir.join(name);
-            match read_if_there(&path)? {
+            match read_if_there(on, &path)? {
                 Some(bytes) if bytes == text.as_bytes() => {}
                 Some(_) => return Err(RecordError::OtherExperiment { path: dir.into(), file: (*name).to_owned() }),
                 None if started => return Err(RecordError::damaged(&path, "missing, although results exist")),
-                None => write_below(dir, &path, text.as_bytes())?,
+                None => write_below(on, &path, text.as_bytes())?,
             }
         }
         let given = given.iter().map(|(name, _)| (*name).to_owned()).collect();
-        let mut folder = Self { dir: dir.into(), given, state: State::Fresh, _lock: lock };
-        if dir.join(Manifest::NAME).exists() {
-            super::FinishedRun::read(dir)?;
+        let mut folder = Self { disk, dir: dir.into(), given, state: State::Fresh, _lock: lock };
+        if complete {
+            super::FinishedRun::read_on(Arc::clone(&folder.disk), dir)?;
             folder.state = State::Complete;
             folder.remove_parts();
         } else if started {
@@ -97,7 +115,7 @@ impl RunFolder {
     /// # Errors
     /// [`RecordError::Unreadable`] if the folder cannot be listed.
     pub fn parts(&self) -> Result<Vec<String>, RecordError> {
-        part_names(&self.dir)
+        part_names(&*self.disk, &self.dir)
     }
 
     /// Commits one cohort's results under a name of letters, digits, `.`, `-`, `_`. Replaces a part of that name whole.
@@ -110,13 +128,13 @@ impl RunFolder {
             return Err(RecordError::invalid(name, "the run is complete and takes no more parts"));
         }
         let parts = self.dir.join(PARTS);
-        fs::create_dir_all(&parts).map_err(|source| RecordError::NotCommitted { path: parts, source })?;
+        atomic::make_folder(&*self.disk, &parts)?;
         let mut bytes = Vec::with_capacity(PART_HEADER + content.len());
         bytes.extend_from_slice(PART_MAGIC);
         bytes.extend_from_slice(&(content.len() as u64).to_le_bytes());
         bytes.extend_from_slice(&Sha256::digest(content));
         bytes.extend_from_slice(content);
-        atomic::write(&path, &bytes)?;
+        atomic::write(&*self.disk, &path, &bytes)?;
         self.state = State::Partial;
         Ok(())
     }
@@ -127,7 +145,7 @@ impl RunFolder {
     /// [`RecordError::Damaged`] if the part is cut, altered or not one of ours.
     pub fn read_part(&self, name: &str) -> Result<Option<Vec<u8>>, RecordError> {
         let path = self.part_path(name)?;
-        let Some(mut bytes) = read_if_there(&path)? else { return Ok(None) };
+        let Some(mut bytes) = read_if_there(&*self.disk, &path)? else { return Ok(None) };
         match part_problem(&bytes) {
             Some(problem) => Err(RecordError::Damaged {
                 path,
@@ -151,10 +169,11 @@ impl RunFolder {
         if self.state == State::Complete {
             return Err(RecordError::invalid(Manifest::NAME, "the run is already complete"));
         }
+        let disk = &*self.disk;
         let mut digests = BTreeMap::new();
         for name in &self.given {
             let path = self.dir.join(name);
-            let digest = FileDigest::of_file(&path).map_err(RecordError::unreadable(&path))?;
+            let digest = FileDigest::of_file(disk, &path).map_err(RecordError::unreadable(&path))?;
             digests.insert(name.clone(), digest);
         }
         let mut folders = BTreeSet::from([self.dir.clone()]);
@@ -164,19 +183,18 @@ impl RunFolder {
             }
             let path = self.dir.join(&name);
             if let Some(folder) = path.parent().filter(|folder| !folders.contains(*folder)) {
-                let failed = |source| RecordError::NotCommitted { path: folder.into(), source };
-                fs::create_dir_all(folder).map_err(failed)?;
-                atomic::remove_leftovers(folder)?;
+                atomic::make_folder(disk, folder)?;
+                atomic::remove_leftovers(disk, folder)?;
                 folders.insert(folder.into());
             }
-            atomic::place(&path, &bytes)?;
+            atomic::place(disk, &path, &bytes)?;
             digests.insert(name, FileDigest::of(&bytes));
         }
         for folder in folders.iter().rev() {
-            atomic::sync_folder(folder)?;
+            atomic::sync_folder(disk, folder)?;
         }
         let manifest = Manifest { format: FORMAT, provenance, files: digests };
-        atomic::write(&self.dir.join(Manifest::NAME), &manifest.to_bytes()?)?;
+        atomic::write(disk, &self.dir.join(Manifest::NAME), &manifest.to_bytes()?)?;
         self.remove_parts();
         Ok(manifest)
     }
@@ -191,26 +209,22 @@ impl RunFolder {
 
     /// Best effort: parts of a complete run are only wasted space, and the next opening tries again.
     fn remove_parts(&self) {
-        for name in part_names(&self.dir).unwrap_or_default() {
-            let _ = fs::remove_file(self.dir.join(PARTS).join(name));
+        for name in part_names(&*self.disk, &self.dir).unwrap_or_default() {
+            let _ = self.disk.remove_file(&self.dir.join(PARTS).join(name));
         }
-        let _ = fs::remove_dir(self.dir.join(PARTS));
+        let _ = self.disk.remove_folder(&self.dir.join(PARTS));
     }
 }
 
-/// Takes the lock that keeps two processes from writing to one folder. It is given back when the file is dropped, or
-/// by the operating system when the process ends in any way.
+/// Takes the lock that keeps two processes from writing to one folder, as [`Disk::lock`].
 ///
 /// # Errors
 /// [`RecordError::Busy`] if another holds it, [`RecordError::Unwritable`] if it cannot be taken at all.
-pub fn lock(dir: &Path) -> Result<File, RecordError> {
-    let unwritable = |source| RecordError::Unwritable { path: dir.into(), source };
-    let file = File::options().create(true).append(true).open(dir.join(LOCK)).map_err(unwritable)?;
-    match file.try_lock() {
-        Ok(()) => Ok(file),
-        Err(TryLockError::WouldBlock) => Err(RecordError::Busy { path: dir.into() }),
-        Err(TryLockError::Error(source)) => Err(unwritable(source)),
-    }
+pub fn lock(disk: &dyn Disk, dir: &Path) -> Result<Lock, RecordError> {
+    disk.lock(&dir.join(LOCK)).map_err(|error| match error {
+        TryLockError::WouldBlock => RecordError::Busy { path: dir.into() },
+        TryLockError::Error(source) => RecordError::Unwritable { path: dir.into(), source },
+    })
 }
 
 /// Whether a file may have this path: one inside the folder that is not kept for ourselves.
@@ -230,21 +244,31 @@ fn check_names(given: &[(&str, &str)]) -> Result<(), RecordError> {
     Ok(())
 }
 
-/// Writes a file, and the folder in `dir` that holds it if there is none.
-fn write_below(dir: &Path, path: &Path, bytes: &[u8]) -> Result<(), RecordError> {
-    if let Some(folder) = path.parent().filter(|folder| !folder.exists()) {
-        let failed = |source| RecordError::NotCommitted { path: folder.into(), source };
-        fs::create_dir_all(folder).map_err(failed)?;
-        atomic::sync_folder(dir)?;
+/// Makes the folder itself; what keeps it from being made, such as a file in its place, is a matter of `--out`.
+fn make_run_folder(disk: &dyn Disk, dir: &Path) -> Result<(), RecordError> {
+    atomic::make_folder(disk, dir).map_err(|error| match error {
+        RecordError::NotCommitted { path, source } => RecordError::Unwritable { path, source },
+        other => other,
+    })
+}
+
+/// Writes a file, and the folder that holds it if there is none.
+fn write_below(disk: &dyn Disk, path: &Path, bytes: &[u8]) -> Result<(), RecordError> {
+    if let Some(folder) = path.parent() {
+        atomic::make_folder(disk, folder)?;
     }
-    atomic::write(path, bytes)
+    atomic::write(disk, path, bytes)
+}
+
+fn exists(disk: &dyn Disk, path: &Path) -> Result<bool, RecordError> {
+    Ok(disk.kind(path).map_err(RecordError::unreadable(path))?.is_some())
 }
 
 /// A folder is ours if it has the marker, which is the first file written after the lock.
-fn refuse_foreign(dir: &Path) -> Result<(), RecordError> {
+fn refuse_foreign(disk: &dyn Disk, dir: &Path) -> Result<(), RecordError> {
     let marker = dir.join(MARKER);
     let expected = format!("skilltree run folder, format {FORMAT}\n");
-    if let Some(bytes) = read_if_there(&marker)? {
+    if let Some(bytes) = read_if_there(disk, &marker)? {
         let found = String::from_utf8_lossy(&bytes);
         return match found.strip_prefix("skilltree run folder, format ") {
             Some(_) if found == expected => Ok(()),
@@ -252,26 +276,18 @@ fn refuse_foreign(dir: &Path) -> Result<(), RecordError> {
             None => Err(RecordError::damaged(&marker, "not the text that skilltree writes")),
         };
     }
-    match atomic::list(dir)?.into_iter().find(|name| name != LOCK && !atomic::is_temporary(name)) {
+    match atomic::list(disk, dir)?.into_iter().find(|name| name != LOCK && !atomic::is_temporary(name)) {
         Some(found) => Err(RecordError::Foreign { path: dir.into(), found }),
         None => Ok(()),
     }
 }
 
-fn atomic_once(path: &Path, bytes: &[u8]) -> Result<(), RecordError> {
-    if path.exists() { Ok(()) } else { atomic::write(path, bytes) }
+fn atomic_once(disk: &dyn Disk, path: &Path, bytes: &[u8]) -> Result<(), RecordError> {
+    if exists(disk, path)? { Ok(()) } else { atomic::write(disk, path, bytes) }
 }
 
-fn read_if_there(path: &Path) -> Result<Option<Vec<u8>>, RecordError> {
-    match fs::read(path) {
-        Ok(bytes) => Ok(Some(bytes)),
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
-        Err(source) => Err(RecordError::Unreadable { path: path.into(), source }),
-    }
-}
-
-fn part_names(dir: &Path) -> Result<Vec<String>, RecordError> {
-    Ok(atomic::list(&dir.join(PARTS))?.into_iter().filter(|name| is_plain(name)).collect())
+fn part_names(disk: &dyn Disk, dir: &Path) -> Result<Vec<String>, RecordError> {
+    Ok(atomic::list(disk, &dir.join(PARTS))?.into_iter().filter(|name| is_plain(name)).collect())
 }
 
 fn part_problem(bytes: &[u8]) -> Option<&'static str> {

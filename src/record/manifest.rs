@@ -1,12 +1,12 @@
 //! `manifest.json`: what made a run folder, and the length and hash of every file in it.
 
+use super::disk::Disk;
 use super::{FORMAT, RecordError};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::fs::File;
-use std::io::{self, Read};
+use std::io;
 use std::path::Path;
 
 /// Who made the results, where and when.
@@ -109,14 +109,15 @@ impl FileDigest {
     ///
     /// # Errors
     /// Whatever reading the file gives.
-    pub fn of_file(path: &Path) -> io::Result<Self> {
-        let (mut file, mut hasher) = (File::open(path)?, Sha256::new());
+    pub fn of_file(disk: &dyn Disk, path: &Path) -> io::Result<Self> {
+        let (mut file, mut hasher) = (disk.open(path)?, Sha256::new());
         let (mut buffer, mut bytes) = (vec![0; 1 << 16], 0);
         loop {
-            let read = file.read(&mut buffer)?;
-            if read == 0 {
-                return Ok(Self { bytes, sha256: hexadecimal(&hasher.finalize()) });
-            }
+            let read = match file.read(&mut buffer) {
+                Ok(0) => return Ok(Self { bytes, sha256: hexadecimal(&hasher.finalize()) }),
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+                other => other?,
+            };
             hasher.update(&buffer[..read]);
             bytes += read as u64;
         }

@@ -2,14 +2,16 @@
 //!
 //! The experiment writes through [`RunFolder`]; reports read through [`FinishedRun`] and never write here.
 //! Every file is committed whole (temporary file, fsync, rename), and `manifest.json` comes last: a folder that
-//! holds it is complete, and its hashes vouch for every other file.
+//! holds it is complete, and its hashes vouch for every other file. Files are reached through [`disk`] alone.
 
 pub mod atomic;
 mod columns;
+pub mod disk;
 mod error;
 pub mod finished;
 pub mod folder;
 pub mod manifest;
+mod pages;
 pub mod places;
 pub mod sweep;
 pub mod tables;

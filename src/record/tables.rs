@@ -2,6 +2,7 @@
 
 use super::RecordError;
 use super::columns::{self, Column, Table};
+use super::disk::{Disk, FileSystem};
 use std::path::Path;
 
 /// File name of the training trials.
@@ -159,11 +160,19 @@ pub fn write_evaluations(rows: &[EvaluationRow], names: &Names) -> Result<Vec<u8
 /// [`RecordError::Damaged`] for anything but a table of exactly these columns, [`RecordError::Unreadable`],
 /// [`RecordError::Format`].
 pub fn read_trials(path: &Path) -> Result<(Names, Vec<TrialRow>), RecordError> {
-    columns::guarded(path, || trials_of(path))
+    parse_trials(FileSystem.read(path).map_err(RecordError::unreadable(path))?, path)
 }
 
-fn trials_of(path: &Path) -> Result<(Names, Vec<TrialRow>), RecordError> {
-    let table = Table::read(path, TRIAL_SCHEMA)?;
+/// As [`read_trials`], from the file's content; `path` is only for messages.
+///
+/// # Errors
+/// [`RecordError::Damaged`], [`RecordError::Format`].
+pub fn parse_trials(bytes: Vec<u8>, path: &Path) -> Result<(Names, Vec<TrialRow>), RecordError> {
+    columns::guarded(path, || trials_of(bytes, path))
+}
+
+fn trials_of(bytes: Vec<u8>, path: &Path) -> Result<(Names, Vec<TrialRow>), RecordError> {
+    let table = Table::read(bytes, path, TRIAL_SCHEMA)?;
     let (arm, arms) = table.text(0)?;
     let (skill, skills) = table.text(3)?;
     let (point, seed, trial) = (table.count(1)?, table.count(2)?, table.count(4)?);
@@ -190,11 +199,19 @@ fn trials_of(path: &Path) -> Result<(Names, Vec<TrialRow>), RecordError> {
 /// # Errors
 /// As [`read_trials`].
 pub fn read_evaluations(path: &Path) -> Result<(Names, Vec<EvaluationRow>), RecordError> {
-    columns::guarded(path, || evaluations_of(path))
+    parse_evaluations(FileSystem.read(path).map_err(RecordError::unreadable(path))?, path)
 }
 
-fn evaluations_of(path: &Path) -> Result<(Names, Vec<EvaluationRow>), RecordError> {
-    let table = Table::read(path, EVALUATION_SCHEMA)?;
+/// As [`read_evaluations`], from the file's content; `path` is only for messages.
+///
+/// # Errors
+/// As [`parse_trials`].
+pub fn parse_evaluations(bytes: Vec<u8>, path: &Path) -> Result<(Names, Vec<EvaluationRow>), RecordError> {
+    columns::guarded(path, || evaluations_of(bytes, path))
+}
+
+fn evaluations_of(bytes: Vec<u8>, path: &Path) -> Result<(Names, Vec<EvaluationRow>), RecordError> {
+    let table = Table::read(bytes, path, EVALUATION_SCHEMA)?;
     let (arm, arms) = table.text(0)?;
     let (skill, skills) = table.text(3)?;
     let (variant, variants) = table.text(6)?;

@@ -9,7 +9,6 @@ use crate::record::{FinishedRun, RecordError, Trajectory, folder, places, trajec
 use crate::world::{World, load};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::Path;
 
 /// Arms whose example trials are drawn.
@@ -67,9 +66,8 @@ fn read<T>(
     file: &str,
     parse: impl Fn(&[u8], &Path) -> Result<Vec<T>, RecordError>,
 ) -> Result<Vec<T>, ReportError> {
-    let Some(path) = run.path(file) else { return Ok(Vec::new()) };
-    let bytes = fs::read(&path).map_err(RecordError::unreadable(&path))?;
-    Ok(parse(&bytes, &path)?)
+    let Some(bytes) = run.content(file)? else { return Ok(Vec::new()) };
+    Ok(parse(&bytes, &run.dir().join(file))?)
 }
 
 /// The floor plans that a run holds, by file: the config's own, and those of other arms and alterations.
@@ -77,9 +75,8 @@ fn worlds(run: &FinishedRun) -> Result<BTreeMap<String, World>, ReportError> {
     let mut worlds = BTreeMap::new();
     let is_world = |file: &&String| *file == folder::WORLD || file.starts_with("worlds/");
     for file in run.manifest().files.keys().filter(is_world) {
-        let path = run.dir().join(file);
-        let text = fs::read_to_string(&path).map_err(RecordError::unreadable(&path))?;
-        worlds.insert(file.clone(), load::parse(&text, &path)?);
+        let text = run.text(file)?.unwrap_or_default();
+        worlds.insert(file.clone(), load::parse(&text, &run.dir().join(file))?);
     }
     Ok(worlds)
 }

@@ -25,11 +25,12 @@ pub mod trace;
 pub mod training;
 
 use crate::config::ConfigError;
+use crate::record::disk::{Disk, FileSystem};
 use crate::record::{FinishedRun, RecordError, atomic, folder};
 use rayon::prelude::*;
 use results::Results;
-use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// File name of the page.
 pub const PAGE: &str = "report.html";
@@ -57,26 +58,37 @@ pub enum ReportError {
 /// # Errors
 /// If the folder is not a complete run, in use, damaged or not writable. Each file is written whole or not at all.
 pub fn write(dir: &Path) -> Result<Vec<PathBuf>, ReportError> {
-    let run = FinishedRun::read(dir)?;
-    let _lock = folder::lock(dir)?;
+    write_on(Arc::new(FileSystem), dir)
+}
+
+/// As [`write()`], on a disk of the caller's.
+///
+/// # Errors
+/// As [`write()`].
+pub fn write_on(disk: Arc<dyn Disk>, dir: &Path) -> Result<Vec<PathBuf>, ReportError> {
+    let run = FinishedRun::read_on(Arc::clone(&disk), dir)?;
+    let _lock = folder::lock(&*disk, dir)?;
     let results = Results::read(&run)?;
     let drawings = gallery::draw(&run, &results)?;
     let page = page::render(&run, &results, &drawings)?;
 
     let folder = dir.join(FIGURES);
-    fs::create_dir_all(&folder).map_err(|source| RecordError::NotCommitted { path: folder.clone(), source })?;
+    atomic::make_folder(&*disk, &folder)?;
+    for folder in [dir, &folder] {
+        atomic::remove_leftovers(&*disk, folder)?;
+    }
     let mut written = Vec::new();
     let images: Result<Vec<_>, _> = drawings.par_iter().map(|figure| raster::png(&figure.svg)).collect();
     for (figure, image) in drawings.iter().zip(images?) {
         for (ending, bytes) in [("svg", figure.svg.as_bytes()), ("png", image.as_slice())] {
             let path = folder.join(format!("{}.{ending}", figure.name));
-            atomic::place(&path, bytes)?;
+            atomic::place(&*disk, &path, bytes)?;
             written.push(path);
         }
     }
-    atomic::sync_folder(&folder)?;
+    atomic::sync_folder(&*disk, &folder)?;
     let path = dir.join(PAGE);
-    atomic::write(&path, page.as_bytes())?;
+    atomic::write(&*disk, &path, page.as_bytes())?;
     written.push(path);
     Ok(written)
 }

@@ -4,7 +4,8 @@ use super::ReportError;
 use super::claims::{self, Claim};
 use super::summary::{self, Summary};
 use super::training::{self, Training};
-use crate::record::{FinishedRun, tables};
+use crate::record::{FinishedRun, RecordError, tables};
+use std::path::Path;
 
 /// What tables and figures of learning are made from.
 #[derive(Debug)]
@@ -23,17 +24,21 @@ impl Results {
     /// # Errors
     /// If one of them is damaged.
     pub fn read(run: &FinishedRun) -> Result<Self, ReportError> {
-        let (names, rows) = match run.path(tables::EVALUATIONS) {
-            Some(path) => tables::read_evaluations(&path)?,
-            None => Default::default(),
-        };
+        let (names, rows) = table(run, tables::EVALUATIONS, tables::parse_evaluations)?;
         let summary = summary::summarise(&names, &rows, &run.manifest().provenance.seeds);
-        let (names, rows) = match run.path(tables::TRIALS) {
-            Some(path) => tables::read_trials(&path)?,
-            None => Default::default(),
-        };
+        let (names, rows) = table(run, tables::TRIALS, tables::parse_trials)?;
         let trainings = training::summarise(&summary, &names, &rows);
         let claims = claims::judge(&summary, &trainings);
         Ok(Self { summary, trainings, claims })
     }
+}
+
+/// A table that a run may lack.
+fn table<T: Default>(
+    run: &FinishedRun,
+    file: &str,
+    parse: impl Fn(Vec<u8>, &Path) -> Result<T, RecordError>,
+) -> Result<T, ReportError> {
+    let Some(bytes) = run.content(file)? else { return Ok(T::default()) };
+    Ok(parse(bytes, &run.dir().join(file))?)
 }

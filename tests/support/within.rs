@@ -1,0 +1,67 @@
+//! A tiny experiment that runs within the test's own process, on any disk.
+
+use skilltree::backend::cpu::CpuBackend;
+use skilltree::config::plan::Plan;
+use skilltree::config::{Overrides, load};
+use skilltree::experiment::group::{Group, groups};
+use skilltree::experiment::run::{Observer, Options, RunError, run};
+use skilltree::record::disk::Disk;
+use skilltree::record::{Provenance, RunFolder, State};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Two learners of one skill in the small world, a few milliseconds of work.
+const CUTS: [&str; 7] = [
+    "world=../tests/support/small.toml",
+    "arms=['taught-adam']",
+    "skill.dock.trials=2",
+    "evaluate.at=[0, 2]",
+    "evaluate.episodes=3",
+    "teacher.episodes=4",
+    "teacher.bank=16",
+];
+
+/// An experiment that is ready to run.
+pub(crate) struct Experiment {
+    pub(crate) plan: Plan,
+    pub(crate) groups: Vec<Group>,
+}
+
+struct Nobody;
+
+impl Observer for Nobody {
+    fn trials(&mut self, _: u64) {}
+    fn committed(&mut self, _: usize) {}
+}
+
+impl Experiment {
+    pub(crate) fn tiny() -> Self {
+        let config = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/docking.toml");
+        let set = CUTS.iter().map(|&cut| cut.to_owned()).collect();
+        let plan = load(&config, &Overrides { set, seeds: Some("0..2".to_owned()) }).unwrap();
+        let groups = groups(&plan).unwrap();
+        Self { plan, groups }
+    }
+
+    pub(crate) fn open(&self, disk: &Arc<dyn Disk>, dir: &Path) -> Result<RunFolder, RunError> {
+        let worlds: Vec<(&str, &str)> = self.plan.worlds.iter().map(|world| (&*world.file, &*world.text)).collect();
+        Ok(RunFolder::open_on(Arc::clone(disk), dir, &self.plan.resolved, &worlds)?)
+    }
+
+    /// What the program does between reading the config and reporting: a learner is a cohort, so that there are parts.
+    pub(crate) fn run(&self, disk: &Arc<dyn Disk>, dir: &Path) -> Result<(), RunError> {
+        let folder = self.open(disk, dir)?;
+        if folder.state() == State::Complete {
+            return Ok(());
+        }
+        let mut backend = CpuBackend::new(1, None).map_err(RunError::Backend)?;
+        let provenance = Provenance { seeds: self.plan.seeds.clone(), ..Provenance::default() };
+        let options = Options { cohort: Some(1) };
+        run(&self.plan, &self.groups, folder, &mut backend, options, provenance, &mut Nobody)
+    }
+}
+
+/// Where the tests put the run folder on a disk of their own.
+pub(crate) fn folder() -> PathBuf {
+    PathBuf::from("/runs/tiny")
+}
