@@ -29,7 +29,8 @@ pub fn bootstrap_stratified(strata: &[&[f64]], statistic: Statistic, resamples: 
 /// spread that changes with the value.
 pub fn bootstrap_bca(strata: &[&[f64]], statistic: Statistic, resamples: usize) -> Interval {
     let pooled = |left_out: Option<(usize, usize)>| {
-        let kept = strata.iter().enumerate().flat_map(|(s, stratum)| stratum.iter().enumerate().map(move |(i, &v)| (s, i, v)));
+        let kept =
+            strata.iter().enumerate().flat_map(|(s, stratum)| stratum.iter().enumerate().map(move |(i, &v)| (s, i, v)));
         let kept = kept.filter(|&(s, i, _)| Some((s, i)) != left_out).map(|(_, _, value)| value);
         statistic(&sorted(&kept.collect::<Vec<_>>()))
     };
@@ -105,7 +106,7 @@ fn outcomes(strata: &[&[f64]], statistic: Statistic, resamples: usize) -> Vec<f6
     }
     let mut values: Vec<(f64, usize, usize)> = Vec::new();
     for (s, stratum) in strata.iter().enumerate() {
-        values.extend(stratum.iter().enumerate().map(|(i, &value)| (value, s, i)));
+        values.extend(sorted(stratum).into_iter().enumerate().map(|(i, value)| (value, s, i)));
     }
     values.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut sample = Vec::with_capacity(values.len());

@@ -7,9 +7,8 @@ use super::location::{mean, sorted};
 /// Share of runs with a score above each limit (strictly), averaged over strata.
 pub fn performance_profile(strata: &[&[f64]], limits: &[f64]) -> Vec<f64> {
     let above = |limit: f64| {
-        let share = |stratum: &&[f64]| {
-            stratum.iter().filter(|score| **score > limit).count() as f64 / stratum.len() as f64
-        };
+        let share =
+            |stratum: &&[f64]| stratum.iter().filter(|score| **score > limit).count() as f64 / stratum.len() as f64;
         mean(&strata.iter().map(share).collect::<Vec<_>>())
     };
     limits.iter().map(|&limit| above(limit)).collect()

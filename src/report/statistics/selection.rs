@@ -1,11 +1,14 @@
 //! Choosing the best of several candidates that were tried on the same seeds, and how sure the choice is.
 
 use super::TABLE_RESAMPLES;
-use super::bootstrap::percentile;
+use super::compare::paired_difference;
 use super::interval::Interval;
-use super::location::{mean, sorted};
+use super::location::mean;
 use crate::report::resample::resample;
 use rayon::prelude::*;
+
+/// Sums of the same values in another order may differ by this much.
+const ROUNDING: f64 = 1e-9;
 
 /// What the seeds say about which candidate is best.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,7 +31,7 @@ pub struct Selection {
 impl Selection {
     /// Whether the seeds cannot tell a candidate from the best: the interval of the difference holds 0.
     pub fn indistinguishable(&self, candidate: usize) -> bool {
-        candidate == self.best || self.behind[candidate].1.contains(0.0)
+        candidate == self.best || self.behind[candidate].1.low <= ROUNDING
     }
 
     /// Candidates that the seeds cannot tell from the best, itself among them.
@@ -48,23 +51,13 @@ pub fn select(candidates: &[&[f64]]) -> Option<Selection> {
     let means: Vec<f64> = candidates.iter().map(|values| mean(values)).collect();
     let best = first_highest(&means);
     let (chosen, out_of_bag) = choices(candidates, seeds);
-    let behind = |values: &&[f64]| {
-        let differences: Vec<f64> = candidates[best].iter().zip(*values).map(|(best, value)| best - value).collect();
-        (mean(&differences), mean_interval(&differences))
-    };
-    let behind = candidates.par_iter().map(behind).collect();
+    let behind = candidates.par_iter().map(|values| paired_difference(candidates[best], values, TABLE_RESAMPLES));
+    let behind = behind.collect();
     Some(Selection { best, means, behind, chosen, out_of_bag })
 }
 
 fn first_highest(means: &[f64]) -> usize {
     (0..means.len()).reduce(|best, i| if means[i] > means[best] { i } else { best }).unwrap_or(0)
-}
-
-/// [`bootstrap`](super::bootstrap) of the mean, without building the samples.
-fn mean_interval(values: &[f64]) -> Interval {
-    let mut outcomes = Vec::with_capacity(TABLE_RESAMPLES);
-    resample(values.len(), TABLE_RESAMPLES, |times| outcomes.push(weighted_sum(values, times) / values.len() as f64));
-    percentile(&sorted(&outcomes))
 }
 
 fn weighted_sum(values: &[f64], times: &[u32]) -> f64 {
@@ -81,14 +74,15 @@ fn choices(candidates: &[&[f64]], seeds: usize) -> (Vec<f64>, f64) {
             *sum = weighted_sum(values, times);
         }
         let highest = sums.iter().fold(f64::NEG_INFINITY, |a, &b| a.max(b));
-        // Sums of the same values in another order may differ in their last bits.
-        let tied: Vec<usize> = (0..sums.len()).filter(|&i| highest - sums[i] <= 1e-9 * highest.abs()).collect();
+        let tied: Vec<usize> = (0..sums.len()).filter(|&i| highest - sums[i] <= ROUNDING).collect();
         let left: Vec<usize> = (0..seeds).filter(|&seed| times[seed] == 0).collect();
         for &i in &tied {
-            chosen[i] += 1.0 / (tied.len() * TABLE_RESAMPLES) as f64;
-            outside += left.iter().map(|&seed| candidates[i][seed]).sum::<f64>() / (left.len().max(1) * tied.len()) as f64;
+            chosen[i] += 1.0 / tied.len() as f64;
+            outside +=
+                left.iter().map(|&seed| candidates[i][seed]).sum::<f64>() / (left.len().max(1) * tied.len()) as f64;
         }
         counted += usize::from(!left.is_empty());
     });
+    let chosen = chosen.into_iter().map(|times| times / TABLE_RESAMPLES as f64).collect();
     (chosen, if counted == 0 { f64::NAN } else { outside / counted as f64 })
 }
