@@ -23,6 +23,8 @@ pub struct Drawing {
 /// A part of the page that has figures.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Section {
+    /// The sweep of the arm of this name.
+    Sweep(String),
     /// The paper's Figure 2, with its seven seeds.
     Paper,
     /// The same, with all seeds.

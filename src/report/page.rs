@@ -6,14 +6,15 @@ use super::figures::{Drawing, Section, with_copies};
 use super::numbers::{number, percent, percent_range, percent_with, points_with, with};
 use super::results::Results;
 use super::statistics::{
-    FEW_SEEDS, TABLE_RESAMPLES, bootstrap, interquartile_mean, mean, paired_difference, share_below, sorted, wilson,
+    TABLE_RESAMPLES, bootstrap, interquartile_mean, mean, paired_difference, share_below, sorted, wilson,
 };
 use super::summary::{Bound, Cell, Score, Series, Skill, Summary, paired};
 use super::text::EARLY_TRIALS;
-use super::{ReportError, alterations, figure2, rooms};
+use super::{ReportError, alterations, figure2, rooms, sweep};
 use crate::record::FinishedRun;
 use minijinja::{AutoEscape, Environment, UndefinedBehavior, Value, context};
 use rayon::prelude::*;
+use std::path::PathBuf;
 
 /// Success that counts as having learned, in the table of trials to criterion.
 const CRITERION: f64 = 0.8;
@@ -32,6 +33,7 @@ fn fill(run: &FinishedRun, results: &Results, figures: &[Drawing]) -> Result<Str
     // A name that the template misspells is an error, not an empty cell.
     environment.set_undefined_behavior(UndefinedBehavior::Strict);
     environment.add_template("page", include_str!("page.html"))?;
+    environment.add_template("sweep", include_str!("sweep/part.html"))?;
     let provenance = &run.manifest().provenance;
     let config: toml::Table = run.config().parse().unwrap_or_default();
     let note = |(name, note): (&String, &String)| context! { name => name.as_str(), text => note.as_str() };
@@ -46,7 +48,7 @@ fn fill(run: &FinishedRun, results: &Results, figures: &[Drawing]) -> Result<Str
     let skills = skills.into_iter().map(|skill| skill_part(skill, of(&Section::Skill(skill.name.clone()))));
     environment.get_template("page")?.render(context! {
         title => config.get("title").and_then(toml::Value::as_str).unwrap_or("skilltree report"),
-        folder => run.dir().file_name().map(|name| name.to_string_lossy().into_owned()),
+        folder => folder_name(run).display().to_string(),
         config => run.config(),
         backend => provenance.backend.as_str(),
         adapter => provenance.adapter.as_deref(),
@@ -56,7 +58,8 @@ fn fill(run: &FinishedRun, results: &Results, figures: &[Drawing]) -> Result<Str
         finished => provenance.finished.as_deref(),
         notes => provenance.notes.iter().map(note).collect::<Vec<_>>(),
         seeds => seed_list(&provenance.seeds),
-        warnings => warnings(summary),
+        warnings => summary.cautions(),
+        sweep => results.swept.as_ref().map(|swept| sweep::part(swept, figures, figure_part, &folder_name(run))),
         claims => results.claims.iter().map(claim_row).collect::<Vec<_>>(),
         comparison => comparison.as_ref().map(|comparison| comparison_part(comparison, results, &of)),
         trials => of(&Section::Trajectories),
@@ -66,6 +69,13 @@ fn fill(run: &FinishedRun, results: &Results, figures: &[Drawing]) -> Result<Str
         criterion => format!("{:.0}%", 100.0 * CRITERION),
         resamples => number(TABLE_RESAMPLES as f64),
     })
+}
+
+/// The last part of the run folder's path.
+fn folder_name(run: &FinishedRun) -> PathBuf {
+    // A path such as `.` has no name of its own.
+    let whole = run.dir().canonicalize().unwrap_or_else(|_| run.dir().to_owned());
+    whole.file_name().map_or_else(|| run.dir().to_owned(), PathBuf::from)
 }
 
 fn claim_row(claim: &Claim) -> Value {
@@ -238,21 +248,6 @@ fn planner(bound: &Bound, never_ends: bool) -> String {
         None => format!("The planner, which knows the floor plan and the pose, {does}: a bound for every arm."),
         Some(arm) => format!("In the task of the arm {arm}, the planner {does}."),
     }
-}
-
-fn warnings(summary: &Summary) -> Vec<String> {
-    let mut warnings = summary.warnings.clone();
-    let cells = summary.skills.iter().flat_map(|skill| &skill.series).map(|series| series.last().scores.len());
-    if let Some(few) = cells.min().filter(|&count| count < FEW_SEEDS) {
-        warnings.push(format!(
-            "Only {few} seeds: bootstrap intervals over fewer than {FEW_SEEDS} seeds are too narrow (with 7, a nominal 95% \
-             interval holds the truth in 81 to 87% of cases). Run at least 30 seeds before drawing conclusions."
-        ));
-    }
-    if summary.skills.is_empty() {
-        warnings.push("The run holds no tests.".into());
-    }
-    warnings
 }
 
 /// `0 to 31` for an unbroken range, a list otherwise.

@@ -3,18 +3,23 @@
 use super::ReportError;
 use super::claims::{self, Claim};
 use super::summary::{self, Summary};
+use super::sweep::Swept;
 use super::training::{self, Training};
-use crate::record::{FinishedRun, tables};
+use crate::record::sweep::{self, read_sweep};
+use crate::record::{FinishedRun, RecordError, tables};
+use std::fs;
 
 /// What tables and figures of learning are made from.
 #[derive(Debug)]
 pub struct Results {
-    /// The tests.
+    /// The tests; of a run with a sweep, those of each arm's first point.
     pub summary: Summary,
     /// The training of the roots.
     pub trainings: Vec<Training>,
     /// The paper's claims.
     pub claims: Vec<Claim>,
+    /// What a sweep measured at all points.
+    pub swept: Option<Swept>,
 }
 
 impl Results {
@@ -27,13 +32,30 @@ impl Results {
             Some(path) => tables::read_evaluations(&path)?,
             None => Default::default(),
         };
-        let summary = summary::summarise(&names, &rows, &run.manifest().provenance.seeds);
-        let (names, rows) = match run.path(tables::TRIALS) {
+        let seeds = &run.manifest().provenance.seeds;
+        let summary = summary::summarise(&names, &rows, seeds, &[]);
+        let swept = match run.path(sweep::FILE) {
+            Some(path) => {
+                let bytes = fs::read(&path).map_err(RecordError::unreadable(&path))?;
+                Some(Swept::new(read_sweep(&bytes, &path)?, &summary, seeds))
+            }
+            None => None,
+        };
+        let summary = if swept.is_some() { summary.first_points() } else { summary };
+        let (names, mut rows) = match run.path(tables::TRIALS) {
             Some(path) => tables::read_trials(&path)?,
             None => Default::default(),
         };
+        if swept.is_some() {
+            let shown = |arm: &String| {
+                let mut series = summary.skills.iter().flat_map(|skill| &skill.series);
+                series.find(|series| series.arm == *arm).map(|series| series.point)
+            };
+            let points: Vec<Option<u32>> = names.arms.iter().map(shown).collect();
+            rows.retain(|row| points[row.arm as usize] == Some(row.point));
+        }
         let trainings = training::summarise(&summary, &names, &rows);
         let claims = claims::judge(&summary, &trainings);
-        Ok(Self { summary, trainings, claims })
+        Ok(Self { summary, trainings, claims, swept })
     }
 }

@@ -29,7 +29,7 @@ pub fn table(summary: &Summary, claims: &[Claim]) -> String {
         let (number, title, verdict) = (claim.number, claim.title, claim.verdict.words());
         let _ = writeln!(text, "  {number:>2} {title:<18} {verdict:<15} {}", figures.replace('`', ""));
     }
-    for warning in &summary.warnings {
+    for warning in summary.cautions() {
         let _ = writeln!(text, "note: {warning}");
     }
     text.push('\n');

@@ -178,7 +178,7 @@ fn seeds_that_are_missing_are_said_not_averaged_over() {
     let (names, mut rows) = synthetic(4);
     rows.retain(|row| !(row.arm == 0 && row.skill == 0 && row.trials == 150 && row.seed == 2));
     rows.retain(|row| !(row.arm == 1 && row.seed == 3));
-    let summary = summarise(&names, &rows, &[0, 1, 2, 3]);
+    let summary = summarise(&names, &rows, &[0, 1, 2, 3], &[]);
     let (dock, recharge) = (&summary.skills[0], &summary.skills[1]);
     assert_eq!((dock.name.as_str(), dock.series.len()), ("dock", 4));
     assert!(dock.series[0].cells.iter().all(|cell| cell.trials != 150 && cell.scores.len() == 4));
@@ -213,7 +213,7 @@ fn sweep_points_are_series_of_their_own() {
     second.iter_mut().for_each(|row| row.point = 1);
     rows.extend(second);
     let labels: Vec<_> =
-        summarise(&names, &rows, &[0, 1]).skills[0].series.iter().map(|series| series.label.clone()).collect();
+        summarise(&names, &rows, &[0, 1], &[]).skills[0].series.iter().map(|series| series.label.clone()).collect();
     assert_eq!(labels, ["hierarchical, point 0", "hierarchical, point 1"]);
 }
 
