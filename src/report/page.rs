@@ -6,7 +6,8 @@ use super::figures::{Drawing, Section, with_copies};
 use super::numbers::{number, percent, percent_range, percent_with, points_with, with};
 use super::results::Results;
 use super::statistics::{
-    TABLE_RESAMPLES, bootstrap, interquartile_mean, mean, paired_difference, share_below, sorted, wilson,
+    Observation, Survival, TABLE_RESAMPLES, bootstrap, bootstrap_bca, bootstrap_probability, interquartile_mean, mean,
+    optimality_gap, paired_difference, probability_of_improvement, share_below, sorted, student_t, wilson,
 };
 use super::summary::{Bound, Cell, Score, Series, Skill, Summary, paired};
 use super::text::EARLY_TRIALS;
@@ -74,7 +75,7 @@ fn fill(run: &FinishedRun, results: &Results, figures: &[Drawing]) -> Result<Str
 /// The last part of the run folder's path.
 fn folder_name(run: &FinishedRun) -> PathBuf {
     // A path such as `.` has no name of its own.
-    let whole = run.dir().canonicalize().unwrap_or_else(|_| run.dir().to_owned());
+    let whole = std::path::absolute(run.dir()).unwrap_or_else(|_| run.dir().to_owned());
     whole.file_name().map_or_else(|| run.dir().to_owned(), PathBuf::from)
 }
 
@@ -157,6 +158,11 @@ fn skill_part(skill: &Skill, figures: Vec<Value>) -> Value {
         bounds => bounds.map(|bound| planner(bound, skill.never_ends())).collect::<Vec<_>>(),
         differences => differences,
         ends => !skill.never_ends(),
+        intervals => distinct
+            .par_iter()
+            .map(|(series, copies)| interval_row(series, copies, skill.bound(&series.arm)))
+            .collect::<Vec<_>>(),
+        bounded => !skill.bounds.is_empty(),
         criterion => trained.map(|(series, copies)| criterion_row(series, copies)).collect::<Vec<_>>(),
         figures => figures,
     }
@@ -194,19 +200,39 @@ fn row(label: &str, cell: &Cell) -> Value {
 
 /// A row of a skill's table of trials to criterion.
 fn criterion_row(series: &Series, copies: &[&str]) -> Value {
-    let mut trials = series.trials_to(CRITERION);
-    // Seeds that never got there needed more than all others, so they come last.
-    trials.sort_by_key(|trials| trials.unwrap_or(u32::MAX));
-    let at = |share: f64| match trials[((trials.len() - 1) as f64 * share).round() as usize] {
-        Some(trials) => trials.to_string(),
-        None => format!("more than {}", series.last().trials),
+    let end = series.last().trials;
+    let observation = |trials: Option<u32>| match trials {
+        Some(trials) => Observation { time: f64::from(trials), reached: true },
+        None => Observation { time: f64::from(end), reached: false },
     };
+    let seen: Vec<Observation> = series.trials_to(CRITERION).into_iter().map(observation).collect();
+    let seen = Survival::new(&seen);
+    let trials = |time: Option<f64>| time.map_or_else(|| format!("more than {end}"), number);
+    let (low, high) = seen.quantile_interval(0.5);
     context! {
         arm => with_copies(series, copies),
-        reached => format!("{} of {}", trials.iter().flatten().count(), trials.len()),
-        quarter => at(0.25),
-        median => at(0.5),
-        three_quarters => at(0.75),
+        reached => format!("{} of {}", seen.reached, seen.count),
+        quarter => trials(seen.quantile(0.25)),
+        median => format!("{} [{}, {}]", trials(seen.quantile(0.5)), trials(low), trials(high)),
+        three_quarters => trials(seen.quantile(0.75)),
+    }
+}
+
+/// A row of a skill's table of other intervals: the last test of an arm.
+fn interval_row(series: &Series, copies: &[&str], bound: Option<&Bound>) -> Value {
+    let success = series.last().values(Score::success);
+    let strata = [success.as_slice()];
+    context! {
+        arm => with_copies(series, copies),
+        seeds => success.len(),
+        mean => percent(mean(&success)),
+        percentile => percent_range(bootstrap(&success, mean, TABLE_RESAMPLES)),
+        bca => percent_range(bootstrap_bca(&strata, mean, TABLE_RESAMPLES)),
+        student => percent_range(student_t(&success)),
+        middle => percent(interquartile_mean(&sorted(&success))),
+        middle_percentile => percent_range(bootstrap(&success, interquartile_mean, TABLE_RESAMPLES)),
+        middle_bca => percent_range(bootstrap_bca(&strata, interquartile_mean, TABLE_RESAMPLES)),
+        gap => bound.map(|bound| percent(optimality_gap(&success, bound.score.success()))),
     }
 }
 
@@ -222,11 +248,17 @@ fn differences(first: &Series, other: &Series) -> Vec<Value> {
         };
         let ((success, success_interval), pairs) = of(Score::success);
         let ((steps, interval), _) = of(Score::steps_per_trial);
+        let (all_a, all_b) = (a.values(Score::success), b.values(Score::success));
+        let tasks = [(all_a.as_slice(), all_b.as_slice())];
         context! {
             arms => format!("{} minus {}", first.label, other.label),
             trials => if a.trials == b.trials { a.trials.to_string() } else { format!("{}, {}", a.trials, b.trials) },
             pairs => pairs,
             success => points_with(success, success_interval),
+            higher => percent_with(
+                probability_of_improvement(&tasks),
+                bootstrap_probability(&tasks, TABLE_RESAMPLES),
+            ),
             steps => format!("{steps:+.1} [{:+.1}, {:+.1}]", interval.low, interval.high),
         }
     };

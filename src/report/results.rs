@@ -2,12 +2,16 @@
 
 use super::ReportError;
 use super::claims::{self, Claim};
-use super::summary::{self, Summary};
+use super::summary::{self, Diverged, Summary};
 use super::sweep::Swept;
 use super::training::{self, Training};
 use crate::record::sweep::{self, read_sweep};
 use crate::record::{FinishedRun, RecordError, tables};
 use std::fs;
+use std::path::PathBuf;
+
+/// File name of the learners that diverged.
+const FAILURES: &str = "failures.json";
 
 /// What tables and figures of learning are made from.
 #[derive(Debug)]
@@ -33,12 +37,9 @@ impl Results {
             None => Default::default(),
         };
         let seeds = &run.manifest().provenance.seeds;
-        let summary = summary::summarise(&names, &rows, seeds, &[]);
-        let swept = match run.path(sweep::FILE) {
-            Some(path) => {
-                let bytes = fs::read(&path).map_err(RecordError::unreadable(&path))?;
-                Some(Swept::new(read_sweep(&bytes, &path)?, &summary, seeds))
-            }
+        let summary = summary::summarise(&names, &rows, seeds, &diverged(run)?);
+        let swept = match content(run, sweep::FILE)? {
+            Some((bytes, path)) => Some(Swept::new(read_sweep(&bytes, &path)?, &summary, seeds)),
             None => None,
         };
         let summary = if swept.is_some() { summary.first_points() } else { summary };
@@ -58,4 +59,17 @@ impl Results {
         let claims = claims::judge(&summary, &trainings);
         Ok(Self { summary, trainings, claims, swept })
     }
+}
+
+/// Learners that diverged; most runs have none, and no file.
+fn diverged(run: &FinishedRun) -> Result<Vec<Diverged>, RecordError> {
+    let Some((bytes, path)) = content(run, FAILURES)? else { return Ok(Vec::new()) };
+    serde_json::from_slice(&bytes).map_err(|error| RecordError::damaged(&path, error.to_string()))
+}
+
+/// The content of a file that a run may lack, and its path.
+fn content(run: &FinishedRun, file: &str) -> Result<Option<(Vec<u8>, PathBuf)>, RecordError> {
+    let Some(path) = run.path(file) else { return Ok(None) };
+    let bytes = fs::read(&path).map_err(RecordError::unreadable(&path))?;
+    Ok(Some((bytes, path)))
 }

@@ -4,6 +4,7 @@ mod claims;
 mod comparison;
 mod made;
 mod pages;
+mod sweep;
 
 use glam::Vec2;
 use skilltree::record::places::write_places;
@@ -129,13 +130,21 @@ fn a_report_is_complete_and_the_same_every_time() {
     run_folder(&dir, 32);
     let written = write(&dir).unwrap();
     let names: Vec<_> = written.iter().map(|path| path.strip_prefix(&dir).unwrap().to_str().unwrap()).collect();
-    for name in ["learning-dock", "steps-dock", "actions-recharge", "figure-2b-paper", "world", "sonar-L1", "light-L2"]
-    {
+    for name in [
+        "profile-dock",
+        "learning-dock",
+        "steps-dock",
+        "actions-recharge",
+        "figure-2b-paper",
+        "world",
+        "sonar-L1",
+        "light-L2",
+    ] {
         assert!(names.contains(&format!("figures/{name}.svg").as_str()), "{names:?}");
         assert!(names.contains(&format!("figures/{name}.png").as_str()), "{names:?}");
     }
     // Figure 2 (only its tests), equal cost, rooms; two skills; the world and its places.
-    assert_eq!((names.len(), names.last()), (2 * (2 + 4 + 2 + 2 * 3 + 1 + 3 * 2) + 1, Some(&"report.html")));
+    assert_eq!((names.len(), names.last()), (2 * (2 + 4 + 2 + 2 * 4 + 1 + 3 * 2) + 1, Some(&"report.html")));
     let bytes: Vec<_> = written.iter().map(|path| fs::read(path).unwrap()).collect();
     assert_eq!(write(&dir).unwrap(), written);
     for (path, bytes) in written.iter().zip(&bytes) {
@@ -164,6 +173,8 @@ fn the_page_stands_alone_and_says_what_it_must() {
         "hierarchical minus monolithic",
         "commit 0123456789ab",
         "n = 7 seeds",
+        "performance profile",
+        "BCa bootstrap",
         "percentile bootstrap",
         "planner (bound)",
         "until 80% of a seed",

@@ -7,6 +7,7 @@ pub use collect::summarise;
 
 use super::statistics::FEW_SEEDS;
 use crate::record::EvaluationRow;
+use serde::Deserialize;
 
 /// Warnings that a reader will read; a sweep may have one per point.
 const MOST_WARNINGS: usize = 12;
@@ -212,8 +213,9 @@ pub struct Arm {
     pub hierarchical: bool,
 }
 
-/// A learner of which some number stopped being finite. It has no tests from then on, and they count as failed.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// A learner of which some number stopped being finite, as `failures.json` lists it. It has no tests from then on, and
+/// they count as failed.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 pub struct Diverged {
     /// Its arm's name.
     pub arm: String,

@@ -11,13 +11,13 @@ use crate::report::curves::{COLORS, MOST_SMALL};
 use crate::report::figures::{Drawing, Section, file_word};
 use crate::report::numbers::{limit, number, seeds};
 use crate::report::stairs::{self, Stair, Staircase};
-use crate::report::statistics::{
-    BAND_RESAMPLES, Survival, TABLE_RESAMPLES, bootstrap, mean, quantile, sorted,
-};
+use crate::report::statistics::{BAND_RESAMPLES, Survival, TABLE_RESAMPLES, bootstrap, mean, quantile, sorted};
 use rayon::prelude::*;
 
 /// Limits of a performance profile.
 const LIMITS: usize = 50;
+/// Share of the trials by which a survival curve is drawn on.
+const BEYOND: f64 = 0.04;
 /// The figure's size and the plot within it.
 const WIDTH: f64 = 470.0;
 const HEIGHT: f64 = 424.0;
@@ -71,19 +71,15 @@ fn percentiles(surface: &Surface, label: &str, levels: &[Level]) -> String {
     let title = format!("{}: by {label}", surface.arm);
     let mut canvas = Canvas::new(WIDTH, HEIGHT, &title);
     canvas.text(&title, (16.0, 19.0), 15.0, INK, Anchor::Start);
-    let subtitle = format!("{}, each learner at its last test.", capital(words::measure(surface)));
+    let subtitle = format!("Each learner at its last test: {}.", words::measure(surface));
     canvas.text(&subtitle, (16.0, TOP - 23.0), 11.5, GREY, Anchor::Start);
     let all = || levels.iter().flat_map(|level| level.learners.iter().copied());
     let range = match surface.success {
         true => (0.0, 1.0),
         false => (lower_end(all().fold(0.0, f64::min)), upper_end(all().fold(0.0, f64::max))),
     };
-    let y = axes::Axis {
-        title: words::measure(surface).into(),
-        range,
-        points: (BOTTOM, TOP),
-        percent: surface.success,
-    };
+    let y =
+        axes::Axis { title: words::measure(surface).into(), range, points: (BOTTOM, TOP), percent: surface.success };
     for value in ticks(y.range) {
         let at = y.place(value);
         canvas.line(&[(LEFT, at), (RIGHT, at)], PALE, 0.75);
@@ -115,19 +111,17 @@ fn percentiles(surface: &Surface, label: &str, levels: &[Level]) -> String {
     canvas.line(&means, COLORS[1], 1.2);
     means.iter().for_each(|&at| canvas.disc(at, 3.4, COLORS[1]));
     let notes = [
-        format!("{}. Boxes: 5th, 25th, 50th, 75th, 95th percentile of learners.", capital(&counted(surface, &levels.iter().collect::<Vec<_>>()))),
-        "Dots: mean; bars: its 95% percentile bootstrap interval over seeds".to_owned(),
-        format!("({} resamples).", number(TABLE_RESAMPLES as f64)),
+        format!("{}.", counted(surface, &levels.iter().collect::<Vec<_>>())),
+        "Boxes: 5th, 25th, 50th, 75th and 95th percentile of learners.".to_owned(),
+        format!(
+            "Dots: mean; bars: its 95% percentile bootstrap interval ({} resamples).",
+            number(TABLE_RESAMPLES as f64)
+        ),
     ];
     for (i, note) in notes.iter().enumerate() {
         canvas.text(note, (16.0, BOTTOM + 64.0 + 15.0 * i as f64), 11.5, GREY, Anchor::Start);
     }
     canvas.finish()
-}
-
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// Share of learners with more than each success.
@@ -148,10 +142,15 @@ fn profiles(surface: &Surface, label: &str, shown: &[&Level], all: usize) -> Str
     stairs::draw(&stairs::Figure {
         title: format!("{}: performance profile by {label}", surface.arm),
         subtitle: "Share of learners whose success at the last test exceeds x.".into(),
-        notes: notes(surface, shown, all, format!(
-            "Bands: 95% percentile bootstrap interval over seeds ({} resamples).",
-            number(BAND_RESAMPLES as f64)
-        )),
+        notes: notes(
+            surface,
+            shown,
+            all,
+            format!(
+                "Bands: 95% percentile bootstrap interval over seeds ({} resamples).",
+                number(BAND_RESAMPLES as f64)
+            ),
+        ),
         x_title: "success at the last test".into(),
         y_title: "learners above".into(),
         x_range: (0.0, 1.0),
@@ -162,7 +161,7 @@ fn profiles(surface: &Surface, label: &str, shown: &[&Level], all: usize) -> Str
 
 /// Share of learners that have not reached the criterion yet.
 fn survivals(surface: &Surface, label: &str, shown: &[&Level], all: usize) -> String {
-    let curves: Vec<Staircase> = shown
+    let mut curves: Vec<Staircase> = shown
         .iter()
         .map(|level| {
             let curve = Survival::new(&level.seen);
@@ -172,15 +171,18 @@ fn survivals(surface: &Surface, label: &str, shown: &[&Level], all: usize) -> St
         })
         .collect();
     let longest = curves.iter().map(|curve| curve.end).fold(1.0, f64::max);
-    let mut lines = notes(surface, shown, all, "Kaplan-Meier; bands: 95% log-log intervals. In brackets: learners that".into());
-    lines.push("got there; the others are censored at the last test.".into());
+    // A little beyond the last test, so that its stair shows.
+    curves.iter_mut().for_each(|curve| curve.end += BEYOND * longest);
+    let mut lines =
+        notes(surface, shown, all, "Kaplan-Meier; bands: 95% log-log intervals, learners taken as independent.".into());
+    lines.push("In brackets: learners that got there; the others are censored.".into());
     stairs::draw(&stairs::Figure {
         title: format!("{}: trials to criterion by {label}", surface.arm),
         subtitle: format!("Share of learners without a test at {} or more by then.", limit(CRITERION)),
         notes: lines,
         x_title: "training trials".into(),
         y_title: "not there yet".into(),
-        x_range: (0.0, longest),
+        x_range: (0.0, (1.0 + BEYOND) * longest),
         x_percent: false,
         curves,
     })
@@ -188,5 +190,5 @@ fn survivals(surface: &Surface, label: &str, shown: &[&Level], all: usize) -> St
 
 fn notes(surface: &Surface, shown: &[&Level], all: usize, interval: String) -> Vec<String> {
     let some = if shown.len() < all { format!(" {} of {all} values are shown.", shown.len()) } else { String::new() };
-    vec![format!("{}.{some}", capital(&counted(surface, shown))), interval]
+    vec![format!("{}.{some}", counted(surface, shown)), interval]
 }

@@ -60,7 +60,8 @@ pub fn levels(sweep: &Sweep, surface: &Surface, axis: usize) -> Vec<Level> {
         let count = ascending.len();
         let class = |class: usize| {
             let points = ascending[count * class / CLASSES..count * (class + 1) / CLASSES].to_vec();
-            let ends = [points.first(), points.last()].map(|point| point.map_or_else(String::new, |&p| words::value(value(p))));
+            let ends = [points.first(), points.last()]
+                .map(|point| point.map_or_else(String::new, |&p| words::value(value(p))));
             Level::new(ends.join(" to "), points, surface)
         };
         return (0..CLASSES).map(class).collect();
@@ -79,7 +80,6 @@ pub fn effect(levels: &[Level]) -> Option<(usize, usize, f64, Interval)> {
     let means: Vec<f64> = levels.iter().map(|level| mean(&level.by_seed)).collect();
     let highest = (0..means.len()).reduce(|a, b| if means[b] > means[a] { b } else { a })?;
     let lowest = (0..means.len()).reduce(|a, b| if means[b] < means[a] { b } else { a })?;
-    let (difference, interval) =
-        paired_difference(&levels[highest].by_seed, &levels[lowest].by_seed, TABLE_RESAMPLES);
+    let (difference, interval) = paired_difference(&levels[highest].by_seed, &levels[lowest].by_seed, TABLE_RESAMPLES);
     Some((highest, lowest, difference, interval))
 }

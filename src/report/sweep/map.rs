@@ -77,7 +77,8 @@ fn cells(sweep: &Sweep, surface: &Surface, (x, y): (usize, usize), points: &[usi
     for (row, (column, across)) in
         rows.iter().enumerate().flat_map(|(row, _)| columns.iter().enumerate().map(move |column| (row, column)))
     {
-        let shared: Vec<usize> = across.points.iter().copied().filter(|point| rows[row].points.contains(point)).collect();
+        let shared: Vec<usize> =
+            across.points.iter().copied().filter(|point| rows[row].points.contains(point)).collect();
         if !shared.is_empty() {
             most = most.max(shared.len());
             places.push((column, row));

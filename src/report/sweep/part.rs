@@ -116,9 +116,9 @@ fn arm_part(sweep: &Sweep, surface: &Surface) -> Value {
     let axes: Vec<(usize, Vec<Level>)> =
         surface.axes.iter().map(|&axis| (axis, levels(sweep, surface, axis))).collect();
     let effects = axes.iter().filter_map(|(axis, levels)| effect_row(&sweep.axes[*axis].label, surface, levels));
-    let by_value = axes.iter().flat_map(|(axis, levels)| {
-        levels.iter().map(move |level| level_row(&sweep.axes[*axis].label, surface, level))
-    });
+    let by_value = axes
+        .iter()
+        .flat_map(|(axis, levels)| levels.iter().map(move |level| level_row(&sweep.axes[*axis].label, surface, level)));
     context! {
         name => surface.arm.as_str(),
         skill => surface.skill.as_str(),
@@ -194,7 +194,8 @@ fn negated(interval: Interval) -> Interval {
 
 fn effect_row(label: &str, surface: &Surface, levels: &[Level]) -> Option<Value> {
     let (highest, lowest, difference, interval) = effect(levels)?;
-    let at = |level: usize| format!("{} at {}", words::bare(surface, mean(&levels[level].by_seed)), levels[level].label);
+    let at =
+        |level: usize| format!("{} at {}", words::bare(surface, mean(&levels[level].by_seed)), levels[level].label);
     Some(context! {
         axis => label,
         values => levels.len(),
@@ -303,7 +304,11 @@ fn arm_lines(sweep: &Sweep, surface: &Surface, text: &mut String) {
         surface.points.len(),
     );
     if !selection.out_of_bag.is_nan() {
-        let _ = writeln!(text, "    chosen on resampled seeds, tested on the others: {}", words::bare(surface, selection.out_of_bag));
+        let _ = writeln!(
+            text,
+            "    chosen on resampled seeds, tested on the others: {}",
+            words::bare(surface, selection.out_of_bag)
+        );
     }
     for &axis in &surface.axes {
         let levels = levels(sweep, surface, axis);

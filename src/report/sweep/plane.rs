@@ -164,7 +164,8 @@ pub(super) fn draw_cells(plane: &Plane) -> String {
         let ink = colours.ink(mark.value);
         let numbered = width >= ROOM.0 && height >= ROOM.1;
         if numbered {
-            let number = if plane.percent { format!("{:.0}", 100.0 * mark.value) } else { format!("{:.2}", mark.value) };
+            let number =
+                if plane.percent { format!("{:.0}", 100.0 * mark.value) } else { format!("{:.2}", mark.value) };
             canvas.text(&number, (x + width / 2.0, y - height / 2.0), 11.0, ink, Anchor::Middle);
         }
         if mark.undecided {

@@ -58,7 +58,7 @@ pub fn replays(swept: &Swept, folder: &Path) -> Vec<Replay> {
     let mut listed: Vec<Replay> = Vec::new();
     let mut list = |reason: Reason, (arm, point, seed): (&str, u32, u32), values: Option<(f64, f64)>| {
         if listed.iter().any(|known| (known.arm.as_str(), known.point, known.seed) == (arm, point, seed)) {
-            return;
+            return false;
         }
         listed.push(Replay {
             reason,
@@ -69,6 +69,7 @@ pub fn replays(swept: &Swept, folder: &Path) -> Vec<Replay> {
             mean: values.map(|(_, mean)| mean),
             command: command(folder, arm, point, seed),
         });
+        true
     };
     for learner in swept.diverged.iter().take(DIVERGED) {
         list(Reason::Diverged, (&learner.arm, learner.point, learner.seed), None);
@@ -90,8 +91,12 @@ pub fn replays(swept: &Swept, folder: &Path) -> Vec<Replay> {
         .filter(|(_, (_, _, (value, mean)))| value < mean)
         .collect();
     all.sort_by(|(_, a), (_, b)| (a.2.0 - a.2.1).total_cmp(&(b.2.0 - b.2.1)));
-    for (surface, (point, seed, values)) in all.into_iter().take(FURTHEST) {
-        list(Reason::FarBelow, (&surface.arm, point, seed), Some(values));
+    let mut far = 0;
+    for (surface, (point, seed, values)) in all {
+        if far == FURTHEST {
+            break;
+        }
+        far += usize::from(list(Reason::FarBelow, (&surface.arm, point, seed), Some(values)));
     }
     listed
 }
@@ -110,6 +115,8 @@ fn learners(surface: &Surface, points: &[usize]) -> Vec<(u32, u32, (f64, f64))> 
 fn command(folder: &Path, arm: &str, point: u32, seed: u32) -> String {
     let quoted = |text: String| shlex::try_quote(&text).map(|quoted| quoted.into_owned()).unwrap_or(text);
     let config = quoted(folder.join(crate::record::folder::CONFIG).display().to_string());
-    let out = quoted(format!("{}-{arm}-p{point}-{seed}", folder.display()));
+    let beside = folder.file_name().map_or_else(|| "replay".to_owned(), |name| name.to_string_lossy().into_owned());
+    let out = folder.with_file_name(format!("{beside}-{arm}-p{point}-{seed}"));
+    let out = quoted(out.display().to_string());
     format!("skilltree run {config} --arm {} --point {point} --seeds {seed} --out {out}", quoted(arm.to_owned()))
 }

@@ -61,7 +61,11 @@ impl<'a> Span<'a> {
         let all: Vec<f64> = inside.collect();
         // Over several decades, powers of ten are enough.
         let whole = |value: &f64| all.len() <= 6 || (value.log10() - value.log10().round()).abs() < 1e-9;
-        all.iter().copied().filter(whole).map(|value| (value.log10(), words::value(&AxisValue::Number(value)))).collect()
+        all.iter()
+            .copied()
+            .filter(whole)
+            .map(|value| (value.log10(), words::value(&AxisValue::Number(value))))
+            .collect()
     }
 }
 

@@ -83,7 +83,8 @@ pub fn surfaces(sweep: &Sweep, summary: &Summary, seeds: &[u32]) -> (Vec<Surface
 fn point(series: &Series, success: bool, diverged: &[Diverged]) -> Point {
     let last = series.last();
     let failed = |seed: u32| {
-        let same = |learner: &Diverged| (&learner.arm, learner.point, learner.seed) == (&series.arm, series.point, seed);
+        let same =
+            |learner: &Diverged| (&learner.arm, learner.point, learner.seed) == (&series.arm, series.point, seed);
         diverged.iter().any(same)
     };
     let first = series.trials_to(CRITERION);
