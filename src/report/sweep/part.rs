@@ -161,10 +161,13 @@ fn best_sentence(sweep: &Sweep, surface: &Surface) -> String {
     )
 }
 
-/// `240 [200, 290]` trials; where half of the learners never got there, more than all.
+/// `240 [200, 290]` trials; an end that the learners never reached is more than all trials.
 fn median(seen: &Survival) -> String {
     let or_more = |time: Option<f64>| time.map_or_else(|| format!("more than {}", number(seen.end)), number);
     let (low, high) = seen.quantile_interval(0.5);
+    if low.is_none() {
+        return or_more(None);
+    }
     format!("{} [{}, {}]", or_more(seen.quantile(0.5)), or_more(low), or_more(high))
 }
 
