@@ -204,7 +204,7 @@ fn draw_band(canvas: &mut Canvas, x: &Axis, y: &Axis, points: &[Point], color: R
 }
 
 /// A shape per curve, so that curves differ in print without colour too.
-fn marker(canvas: &mut Canvas, index: usize, (x, y): (f64, f64), color: RGBColor) {
+pub(super) fn marker(canvas: &mut Canvas, index: usize, (x, y): (f64, f64), color: RGBColor) {
     let outline: &[(f64, f64)] = match index % 4 {
         0 => return canvas.disc((x, y), 3.6, color),
         1 => &[(-3.2, -3.2), (3.2, -3.2), (3.2, 3.2), (-3.2, 3.2)],

@@ -33,8 +33,12 @@ pub fn draw(comparison: &Comparison<'_>, trainings: &[Training]) -> Vec<Drawing>
             let few = section == Section::Paper;
             let trained = kinds[panel].iter().filter(|series| training::of(trainings, series).is_some()).count();
             let mut notes = vec![match few {
-                true => format!("Mean over the first {}.", seeds(PAPER_SEEDS.min(count(kinds[panel])))),
-                false => format!("Sums over {}; bands: 95% bootstrap interval.", seeds(count(kinds[panel]))),
+                true => {
+                    format!("Mean over the first n = {}; no interval.", seeds(PAPER_SEEDS.min(count(kinds[panel]))))
+                }
+                false => {
+                    format!("Sums over n = {}; bands: 95% percentile bootstrap interval.", seeds(count(kinds[panel])))
+                }
             }];
             if !few && trained > MOST_SMALL {
                 notes.push(format!("The first {MOST_SMALL} of {trained} arms with training trials."));
@@ -158,7 +162,7 @@ fn draw_budget(comparison: &Comparison<'_>, shown: &[&Series], measure: &Measure
     let drawn = shown.iter().filter(|series| measure.percent || comparable(series, shown[0]));
     let curves: Vec<Curve> = drawn.map(|series| curve(series, measure)).collect();
     let of = if measure.percent { "Success" } else { "Reinforcement" };
-    let mut notes = vec![format!("Mean over {}; bands: 95% bootstrap interval.", seeds(count(shown)))];
+    let mut notes = vec![format!("Mean over n = {}; bands: 95% percentile bootstrap interval.", seeds(count(shown)))];
     let all = comparison.monolithic.len() + 1;
     if all > curves.len() {
         let why = if measure.percent { "" } else { "; arms that are punished are left out" };

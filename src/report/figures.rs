@@ -1,8 +1,9 @@
 //! Figures of each skill and of the world.
 
-use super::curves::{self, Curve, Figure, MOST_CURVES, Point};
-use super::numbers::number;
-use super::statistics::{BAND_RESAMPLES, bootstrap, mean};
+use super::curves::{self, Curve, Figure, MOST_CURVES, MOST_SMALL, Point};
+use super::numbers::{number, seeds};
+use super::stairs::{self, Stair, Staircase};
+use super::statistics::{BAND_RESAMPLES, bootstrap, mean, performance_profile, profile_band};
 use super::summary::{Cell, Score, Series, Skill, Summary};
 use super::{floor, trace};
 use crate::record::{PlaceReading, Trajectory};
@@ -23,6 +24,8 @@ pub struct Drawing {
 /// A part of the page that has figures.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Section {
+    /// The sweep of the arm of this name.
+    Sweep(String),
     /// The paper's Figure 2, with its seven seeds.
     Paper,
     /// The same, with all seeds.
@@ -93,14 +96,62 @@ const UNENDING: [Measure; 1] = [Measure {
     value: Score::return_per_trial,
 }];
 
+/// Limits of a performance profile.
+const PROFILE_LIMITS: u32 = 100;
+
 /// Curves of every skill that was tested more than once.
 pub fn learning(summary: &Summary) -> Vec<Drawing> {
     let curved = |skill: &&Skill| skill.series.iter().any(|series| series.cells.len() > 1);
     let measures = |skill: &Skill| if skill.never_ends() { &UNENDING[..] } else { &ENDING };
     let skills = summary.skills.iter().filter(curved);
-    let figures: Vec<_> =
-        skills.flat_map(|skill| measures(skill).iter().map(move |measure| (skill, measure))).collect();
-    figures.into_par_iter().map(|(skill, measure)| draw(skill, measure)).collect()
+    let figures: Vec<_> = skills
+        .flat_map(|skill| {
+            let profile = (!skill.never_ends()).then_some((skill, None));
+            measures(skill).iter().map(move |measure| (skill, Some(measure))).chain(profile)
+        })
+        .collect();
+    let drawing = |(skill, measure): (&Skill, Option<&Measure>)| match measure {
+        Some(measure) => draw(skill, measure),
+        None => profile(skill),
+    };
+    figures.into_par_iter().map(drawing).collect()
+}
+
+/// How the seeds of each arm differ: the performance profile of their last tests.
+fn profile(skill: &Skill) -> Drawing {
+    let all = skill.distinct();
+    let limits: Vec<f64> = (0..PROFILE_LIMITS).map(|i| f64::from(i) / f64::from(PROFILE_LIMITS)).collect();
+    let shown: Vec<_> = all.iter().take(MOST_SMALL).collect();
+    let curve = |(series, copies): &&(&Series, Vec<&str>)| {
+        let success = series.last().values(Score::success);
+        let strata = [success.as_slice()];
+        let shares = performance_profile(&strata, &limits);
+        let bands = profile_band(&strata, &limits, BAND_RESAMPLES);
+        let stairs = limits.iter().zip(shares).zip(bands).map(|((&x, y), band)| Stair { x, y, band });
+        Staircase { label: with_copies(series, copies), stairs: stairs.collect(), end: 1.0 }
+    };
+    let mut notes = vec![
+        format!("{}. Bands: 95% percentile bootstrap", seeds_of(&skill.series)),
+        format!("interval ({} resamples of seeds).", number(BAND_RESAMPLES as f64)),
+    ];
+    if all.len() > MOST_SMALL {
+        notes.push(format!("The first {MOST_SMALL} of {} series.", all.len()));
+    }
+    let figure = stairs::Figure {
+        title: format!("{}: performance profile", skill.name),
+        subtitle: "Share of seeds whose success at the last test exceeds x.".into(),
+        notes,
+        x_title: "success at the last test".into(),
+        y_title: "seeds above".into(),
+        x_range: (0.0, 1.0),
+        x_percent: true,
+        curves: shown.iter().map(curve).collect(),
+    };
+    Drawing {
+        name: format!("profile-{}", file_word(&skill.name)),
+        section: Section::Skill(skill.name.clone()),
+        svg: stairs::draw(&figure),
+    }
 }
 
 /// The floor plan and the sensors at its places.
@@ -187,13 +238,18 @@ pub(super) fn curve(series: &Series, measure: &Measure) -> Curve {
     Curve { label: series.label.clone(), points: series.cells.iter().map(point).collect() }
 }
 
-/// Says how many seeds there are and what the bands mean.
-fn seeds_note(series: &[Series]) -> String {
+/// `n = 32 seeds per arm`.
+fn seeds_of(series: &[Series]) -> String {
     let counts = || series.iter().map(|series| series.last().scores.len());
     let (least, most) = (counts().min().unwrap_or(0), counts().max().unwrap_or(0));
-    let seeds = if least == most { format!("n = {most} seeds") } else { format!("n = {least} to {most} seeds") };
+    if least == most { format!("n = {} per arm", seeds(most)) } else { format!("n = {least} to {most} seeds per arm") }
+}
+
+/// Says how many seeds there are and what the bands mean.
+fn seeds_note(series: &[Series]) -> String {
     format!(
-        "Lines: mean over {seeds} per arm. Bands: 95% percentile bootstrap interval of the mean ({} resamples of seeds).",
+        "Lines: mean over {}. Bands: 95% percentile bootstrap interval of the mean ({} resamples of seeds).",
+        seeds_of(series),
         number(BAND_RESAMPLES as f64)
     )
 }

@@ -4,7 +4,7 @@ use super::ReportError;
 use super::comparison::Comparison;
 use super::figures::{self, Drawing};
 use super::results::Results;
-use super::{figure2, rooms};
+use super::{figure2, rooms, sweep};
 use crate::record::{FinishedRun, RecordError, Trajectory, folder, places, trajectories};
 use crate::world::{World, load};
 use rayon::prelude::*;
@@ -20,7 +20,7 @@ const ARMS: usize = 2;
 /// If a file of the run is damaged or, as a floor plan, of another version of skilltree.
 pub fn draw(run: &FinishedRun, results: &Results) -> Result<Vec<Drawing>, ReportError> {
     let worlds = worlds(run)?;
-    let mut drawings = Vec::new();
+    let mut drawings = results.swept.as_ref().map_or_else(Vec::new, sweep::draw);
     if let Some(comparison) = Comparison::new(&results.summary) {
         drawings.extend(figure2::draw(&comparison, &results.trainings));
         drawings.extend(figure2::budget(&comparison));

@@ -18,8 +18,10 @@ pub mod raster;
 pub mod resample;
 pub mod results;
 pub mod rooms;
+pub mod stairs;
 pub mod statistics;
 pub mod summary;
+pub mod sweep;
 pub mod text;
 pub mod trace;
 pub mod training;
@@ -99,5 +101,9 @@ pub fn write_on(disk: Arc<dyn Disk>, dir: &Path) -> Result<Vec<PathBuf>, ReportE
 /// If the folder is not a complete run or is damaged.
 pub fn text(dir: &Path) -> Result<String, ReportError> {
     let results = Results::read(&FinishedRun::read(dir)?)?;
-    Ok(text::table(&results.summary, &results.claims))
+    let mut text = text::table(&results.summary, &results.claims);
+    if let Some(swept) = &results.swept {
+        text.push_str(&sweep::lines(swept, dir));
+    }
+    Ok(text)
 }

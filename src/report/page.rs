@@ -6,14 +6,16 @@ use super::figures::{Drawing, Section, with_copies};
 use super::numbers::{number, percent, percent_range, percent_with, points_with, with};
 use super::results::Results;
 use super::statistics::{
-    FEW_SEEDS, TABLE_RESAMPLES, bootstrap, interquartile_mean, mean, paired_difference, share_below, sorted, wilson,
+    Observation, Survival, TABLE_RESAMPLES, bootstrap, bootstrap_bca, bootstrap_probability, interquartile_mean, mean,
+    optimality_gap, paired_difference, probability_of_improvement, share_below, sorted, student_t, wilson,
 };
 use super::summary::{Bound, Cell, Score, Series, Skill, Summary, paired};
 use super::text::EARLY_TRIALS;
-use super::{ReportError, alterations, figure2, rooms};
+use super::{ReportError, alterations, figure2, rooms, sweep};
 use crate::record::FinishedRun;
 use minijinja::{AutoEscape, Environment, UndefinedBehavior, Value, context};
 use rayon::prelude::*;
+use std::path::PathBuf;
 
 /// Success that counts as having learned, in the table of trials to criterion.
 const CRITERION: f64 = 0.8;
@@ -32,6 +34,7 @@ fn fill(run: &FinishedRun, results: &Results, figures: &[Drawing]) -> Result<Str
     // A name that the template misspells is an error, not an empty cell.
     environment.set_undefined_behavior(UndefinedBehavior::Strict);
     environment.add_template("page", include_str!("page.html"))?;
+    environment.add_template("sweep", include_str!("sweep/part.html"))?;
     let provenance = &run.manifest().provenance;
     let config: toml::Table = run.config().parse().unwrap_or_default();
     let note = |(name, note): (&String, &String)| context! { name => name.as_str(), text => note.as_str() };
@@ -46,7 +49,7 @@ fn fill(run: &FinishedRun, results: &Results, figures: &[Drawing]) -> Result<Str
     let skills = skills.into_iter().map(|skill| skill_part(skill, of(&Section::Skill(skill.name.clone()))));
     environment.get_template("page")?.render(context! {
         title => config.get("title").and_then(toml::Value::as_str).unwrap_or("skilltree report"),
-        folder => run.dir().file_name().map(|name| name.to_string_lossy().into_owned()),
+        folder => folder_name(run).display().to_string(),
         config => run.config(),
         backend => provenance.backend.as_str(),
         adapter => provenance.adapter.as_deref(),
@@ -56,7 +59,8 @@ fn fill(run: &FinishedRun, results: &Results, figures: &[Drawing]) -> Result<Str
         finished => provenance.finished.as_deref(),
         notes => provenance.notes.iter().map(note).collect::<Vec<_>>(),
         seeds => seed_list(&provenance.seeds),
-        warnings => warnings(summary),
+        warnings => summary.cautions(),
+        sweep => results.swept.as_ref().map(|swept| sweep::part(swept, figures, figure_part, &folder_name(run))),
         claims => results.claims.iter().map(claim_row).collect::<Vec<_>>(),
         comparison => comparison.as_ref().map(|comparison| comparison_part(comparison, results, &of)),
         trials => of(&Section::Trajectories),
@@ -66,6 +70,13 @@ fn fill(run: &FinishedRun, results: &Results, figures: &[Drawing]) -> Result<Str
         criterion => format!("{:.0}%", 100.0 * CRITERION),
         resamples => number(TABLE_RESAMPLES as f64),
     })
+}
+
+/// The last part of the run folder's path.
+fn folder_name(run: &FinishedRun) -> PathBuf {
+    // A path such as `.` has no name of its own.
+    let whole = std::path::absolute(run.dir()).unwrap_or_else(|_| run.dir().to_owned());
+    whole.file_name().map_or_else(|| run.dir().to_owned(), PathBuf::from)
 }
 
 fn claim_row(claim: &Claim) -> Value {
@@ -147,6 +158,11 @@ fn skill_part(skill: &Skill, figures: Vec<Value>) -> Value {
         bounds => bounds.map(|bound| planner(bound, skill.never_ends())).collect::<Vec<_>>(),
         differences => differences,
         ends => !skill.never_ends(),
+        intervals => distinct
+            .par_iter()
+            .map(|(series, copies)| interval_row(series, copies, skill.bound(&series.arm)))
+            .collect::<Vec<_>>(),
+        bounded => !skill.bounds.is_empty(),
         criterion => trained.map(|(series, copies)| criterion_row(series, copies)).collect::<Vec<_>>(),
         figures => figures,
     }
@@ -184,19 +200,39 @@ fn row(label: &str, cell: &Cell) -> Value {
 
 /// A row of a skill's table of trials to criterion.
 fn criterion_row(series: &Series, copies: &[&str]) -> Value {
-    let mut trials = series.trials_to(CRITERION);
-    // Seeds that never got there needed more than all others, so they come last.
-    trials.sort_by_key(|trials| trials.unwrap_or(u32::MAX));
-    let at = |share: f64| match trials[((trials.len() - 1) as f64 * share).round() as usize] {
-        Some(trials) => trials.to_string(),
-        None => format!("more than {}", series.last().trials),
+    let end = series.last().trials;
+    let observation = |trials: Option<u32>| match trials {
+        Some(trials) => Observation { time: f64::from(trials), reached: true },
+        None => Observation { time: f64::from(end), reached: false },
     };
+    let seen: Vec<Observation> = series.trials_to(CRITERION).into_iter().map(observation).collect();
+    let seen = Survival::new(&seen);
+    let trials = |time: Option<f64>| time.map_or_else(|| format!("more than {end}"), number);
+    let (low, high) = seen.quantile_interval(0.5);
     context! {
         arm => with_copies(series, copies),
-        reached => format!("{} of {}", trials.iter().flatten().count(), trials.len()),
-        quarter => at(0.25),
-        median => at(0.5),
-        three_quarters => at(0.75),
+        reached => format!("{} of {}", seen.reached, seen.count),
+        quarter => trials(seen.quantile(0.25)),
+        median => format!("{} [{}, {}]", trials(seen.quantile(0.5)), trials(low), trials(high)),
+        three_quarters => trials(seen.quantile(0.75)),
+    }
+}
+
+/// A row of a skill's table of other intervals: the last test of an arm.
+fn interval_row(series: &Series, copies: &[&str], bound: Option<&Bound>) -> Value {
+    let success = series.last().values(Score::success);
+    let strata = [success.as_slice()];
+    context! {
+        arm => with_copies(series, copies),
+        seeds => success.len(),
+        mean => percent(mean(&success)),
+        percentile => percent_range(bootstrap(&success, mean, TABLE_RESAMPLES)),
+        bca => percent_range(bootstrap_bca(&strata, mean, TABLE_RESAMPLES)),
+        student => percent_range(student_t(&success)),
+        middle => percent(interquartile_mean(&sorted(&success))),
+        middle_percentile => percent_range(bootstrap(&success, interquartile_mean, TABLE_RESAMPLES)),
+        middle_bca => percent_range(bootstrap_bca(&strata, interquartile_mean, TABLE_RESAMPLES)),
+        gap => bound.map(|bound| percent(optimality_gap(&success, bound.score.success()))),
     }
 }
 
@@ -212,11 +248,17 @@ fn differences(first: &Series, other: &Series) -> Vec<Value> {
         };
         let ((success, success_interval), pairs) = of(Score::success);
         let ((steps, interval), _) = of(Score::steps_per_trial);
+        let (all_a, all_b) = (a.values(Score::success), b.values(Score::success));
+        let tasks = [(all_a.as_slice(), all_b.as_slice())];
         context! {
             arms => format!("{} minus {}", first.label, other.label),
             trials => if a.trials == b.trials { a.trials.to_string() } else { format!("{}, {}", a.trials, b.trials) },
             pairs => pairs,
             success => points_with(success, success_interval),
+            higher => percent_with(
+                probability_of_improvement(&tasks),
+                bootstrap_probability(&tasks, TABLE_RESAMPLES),
+            ),
             steps => format!("{steps:+.1} [{:+.1}, {:+.1}]", interval.low, interval.high),
         }
     };
@@ -238,21 +280,6 @@ fn planner(bound: &Bound, never_ends: bool) -> String {
         None => format!("The planner, which knows the floor plan and the pose, {does}: a bound for every arm."),
         Some(arm) => format!("In the task of the arm {arm}, the planner {does}."),
     }
-}
-
-fn warnings(summary: &Summary) -> Vec<String> {
-    let mut warnings = summary.warnings.clone();
-    let cells = summary.skills.iter().flat_map(|skill| &skill.series).map(|series| series.last().scores.len());
-    if let Some(few) = cells.min().filter(|&count| count < FEW_SEEDS) {
-        warnings.push(format!(
-            "Only {few} seeds: bootstrap intervals over fewer than {FEW_SEEDS} seeds are too narrow (with 7, a nominal 95% \
-             interval holds the truth in 81 to 87% of cases). Run at least 30 seeds before drawing conclusions."
-        ));
-    }
-    if summary.skills.is_empty() {
-        warnings.push("The run holds no tests.".into());
-    }
-    warnings
 }
 
 /// `0 to 31` for an unbroken range, a list otherwise.

@@ -55,6 +55,8 @@ pub struct Resampler {
 #[derive(Debug, Clone)]
 struct Words {
     seed: u32,
+    /// Strata draw independently of one another.
+    stratum: u32,
     /// Number of the next block of four words.
     block: u64,
     words: [u32; 4],
@@ -65,7 +67,12 @@ struct Words {
 impl Resampler {
     /// The same seed gives the same draws.
     pub fn new(seed: u32) -> Self {
-        Self { words: Words { seed, block: 0, words: [0; 4], left: 0 } }
+        Self { words: Words { seed, stratum: 0, block: 0, words: [0; 4], left: 0 } }
+    }
+
+    /// The stream of one of several strata; the first one's is that of [`resample`].
+    pub fn of_stratum(stratum: u32) -> Self {
+        Self { words: Words { stratum, ..Self::new(SEED).words } }
     }
 
     /// Uniform in `0..count`; 0 if `count` is 0.
@@ -79,7 +86,7 @@ impl TryRng for Words {
 
     fn try_next_u32(&mut self) -> Result<u32, Infallible> {
         if self.left == 0 {
-            self.words = philox([self.block as u32, (self.block >> 32) as u32, 0, 0], [self.seed, 0]);
+            self.words = philox([self.block as u32, (self.block >> 32) as u32, 0, 0], [self.seed, self.stratum]);
             self.block += 1;
             self.left = 4;
         }

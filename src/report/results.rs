@@ -2,20 +2,27 @@
 
 use super::ReportError;
 use super::claims::{self, Claim};
-use super::summary::{self, Summary};
+use super::summary::{self, Diverged, Summary};
+use super::sweep::Swept;
 use super::training::{self, Training};
+use crate::record::sweep::{self, read_sweep};
 use crate::record::{FinishedRun, RecordError, tables};
 use std::path::Path;
+
+/// File name of the learners that diverged.
+const FAILURES: &str = "failures.json";
 
 /// What tables and figures of learning are made from.
 #[derive(Debug)]
 pub struct Results {
-    /// The tests.
+    /// The tests; of a run with a sweep, those of each arm's first point.
     pub summary: Summary,
     /// The training of the roots.
     pub trainings: Vec<Training>,
     /// The paper's claims.
     pub claims: Vec<Claim>,
+    /// What a sweep measured at all points.
+    pub swept: Option<Swept>,
 }
 
 impl Results {
@@ -25,11 +32,25 @@ impl Results {
     /// If one of them is damaged.
     pub fn read(run: &FinishedRun) -> Result<Self, ReportError> {
         let (names, rows) = table(run, tables::EVALUATIONS, tables::parse_evaluations)?;
-        let summary = summary::summarise(&names, &rows, &run.manifest().provenance.seeds);
-        let (names, rows) = table(run, tables::TRIALS, tables::parse_trials)?;
+        let seeds = &run.manifest().provenance.seeds;
+        let summary = summary::summarise(&names, &rows, seeds, &diverged(run)?);
+        let swept = match run.content(sweep::FILE)? {
+            Some(bytes) => Some(Swept::new(read_sweep(&bytes, &run.dir().join(sweep::FILE))?, &summary, seeds)),
+            None => None,
+        };
+        let summary = if swept.is_some() { summary.first_points() } else { summary };
+        let (names, mut rows) = table(run, tables::TRIALS, tables::parse_trials)?;
+        if swept.is_some() {
+            let shown = |arm: &String| {
+                let mut series = summary.skills.iter().flat_map(|skill| &skill.series);
+                series.find(|series| series.arm == *arm).map(|series| series.point)
+            };
+            let points: Vec<Option<u32>> = names.arms.iter().map(shown).collect();
+            rows.retain(|row| points[row.arm as usize] == Some(row.point));
+        }
         let trainings = training::summarise(&summary, &names, &rows);
         let claims = claims::judge(&summary, &trainings);
-        Ok(Self { summary, trainings, claims })
+        Ok(Self { summary, trainings, claims, swept })
     }
 }
 
@@ -41,4 +62,11 @@ fn table<T: Default>(
 ) -> Result<T, ReportError> {
     let Some(bytes) = run.content(file)? else { return Ok(T::default()) };
     Ok(parse(bytes, &run.dir().join(file))?)
+}
+
+/// Learners that diverged; most runs have none, and no file.
+fn diverged(run: &FinishedRun) -> Result<Vec<Diverged>, RecordError> {
+    let Some(bytes) = run.content(FAILURES)? else { return Ok(Vec::new()) };
+    let path = run.dir().join(FAILURES);
+    serde_json::from_slice(&bytes).map_err(|error| RecordError::damaged(&path, error.to_string()))
 }

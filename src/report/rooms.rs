@@ -31,7 +31,10 @@ pub fn draw(comparison: &Comparison<'_>, rooms: &[(usize, &str)]) -> Vec<Drawing
     let figure = |series: &Series| Figure {
         title: format!("{} by starting room", series.label),
         subtitle: SUCCESS.subtitle.into(),
-        notes: vec![format!("Mean over {}; bands: 95% bootstrap interval.", seeds(series.last().scores.len()))],
+        notes: vec![format!(
+            "Mean over n = {}; bands: 95% percentile bootstrap interval.",
+            seeds(series.last().scores.len())
+        )],
         x_title: "training trials".into(),
         y_title: SUCCESS.y_title.into(),
         percent: true,

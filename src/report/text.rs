@@ -29,7 +29,7 @@ pub fn table(summary: &Summary, claims: &[Claim]) -> String {
         let (number, title, verdict) = (claim.number, claim.title, claim.verdict.words());
         let _ = writeln!(text, "  {number:>2} {title:<18} {verdict:<15} {}", figures.replace('`', ""));
     }
-    for warning in &summary.warnings {
+    for warning in summary.cautions() {
         let _ = writeln!(text, "note: {warning}");
     }
     text.push('\n');
@@ -38,7 +38,8 @@ pub fn table(summary: &Summary, claims: &[Claim]) -> String {
 
 fn skill_lines(skill: &Skill) -> String {
     let mut text = String::new();
-    let _ = writeln!(text, "\n{}: greedy test trials; mean over seeds [95 % bootstrap interval]", skill.name);
+    let _ =
+        writeln!(text, "\n{}: greedy test trials; mean over seeds [95 % percentile bootstrap interval]", skill.name);
     let shown = if skill.never_ends() { "return" } else { "success" };
     let (last, arm) = (if skill.never_ends() { "" } else { "seeds < 50 %" }, "arm");
     let _ = writeln!(text, "  {arm:<24} {:>6} {:>6}  {shown:<23} {:>6} {last:>13}", "trials", "seeds", "steps");

@@ -66,8 +66,11 @@ fn figure_2_has_a_panel_per_kind_of_arm() {
     let names: Vec<_> = drawings.iter().map(|drawing| drawing.name.as_str()).collect();
     // The monolithic arm has tests, which only the paper's version shows, and no training trials.
     assert_eq!(names, ["figure-2a-paper", "figure-2b-paper", "figure-2b"]);
-    assert!(drawings[1].svg.contains("greedy tests") && drawings[1].svg.contains("Mean over the first 2 seeds."));
-    assert!(drawings[2].svg.contains("Sums over 2 seeds"));
+    assert!(
+        drawings[1].svg.contains("greedy tests")
+            && drawings[1].svg.contains("Mean over the first n = 2 seeds; no interval.")
+    );
+    assert!(drawings[2].svg.contains("Sums over n = 2 seeds"));
     assert_eq!(drawings.iter().filter(|drawing| drawing.section == Section::Paper).count(), 2);
     let budget = figure2::budget(&comparison);
     assert!(budget.iter().all(|drawing| drawing.svg.contains(">\nmonolithic\n<")), "{}", budget[0].svg);

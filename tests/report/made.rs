@@ -87,7 +87,7 @@ impl Made {
         let mut seeds: Vec<u32> = self.tests.iter().map(|row| row.seed).collect();
         seeds.sort_unstable();
         seeds.dedup();
-        summarise(&self.names, &self.tests, &seeds)
+        summarise(&self.names, &self.tests, &seeds, &[])
     }
 
     pub(crate) fn trainings(&self) -> Vec<Training> {

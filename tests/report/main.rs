@@ -1,118 +1,24 @@
-//! Reports: statistics against NumPy and rliable, figures with ink in them, a page that stands alone.
+//! Reports: figures with ink in them, a page that stands alone.
 
 mod claims;
 mod comparison;
 mod made;
 mod pages;
+mod sweep;
 
 use glam::Vec2;
 use skilltree::record::places::write_places;
 use skilltree::record::tables::write_evaluations;
 use skilltree::record::{EvaluationRow, Names, PlaceReading, Provenance, RecordError, RunFolder};
 use skilltree::report::resample::Resampler;
-use skilltree::report::statistics::{
-    bootstrap, interquartile_mean, mean, paired_difference, quantile, share_below, sorted, wilson,
-};
 use skilltree::report::summary::summarise;
 use skilltree::report::{ReportError, curves, raster, write};
 use skilltree::world::{Pose, World, load};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// NumPy's `RandomState(0).beta(2, 2, (7, 3))`, row by row.
-const BETA: [f64; 21] = [
-    0.696572224336582,
-    0.8862478052104321,
-    0.40532374586369124,
-    0.6095451641948114,
-    0.5193828417443039,
-    0.7580550106047955,
-    0.02419695195152882,
-    0.9424713912979759,
-    0.5088501031542566,
-    0.7970241721749655,
-    0.504113066176043,
-    0.6042073897127618,
-    0.48421134180108677,
-    0.1903544936229557,
-    0.25455619985557004,
-    0.4166363691330901,
-    0.43989826695238865,
-    0.743318504105048,
-    0.12158138147003826,
-    0.6032831230942534,
-    0.7068711326684632,
-];
-
-fn first_column() -> Vec<f64> {
-    BETA.iter().step_by(3).copied().collect()
-}
-
 fn close(a: f64, b: f64, tolerance: f64) {
     assert!((a - b).abs() <= tolerance, "{a} is not {b}");
-}
-
-/// Golden values: rliable 1.2.0 and NumPy on the same numbers.
-#[test]
-fn statistics_match_rliable_and_numpy() {
-    close(mean(&BETA), 0.5341286037678591, 1e-12);
-    close(interquartile_mean(&sorted(&BETA)), 0.5539610020880037, 1e-12);
-    close(interquartile_mean(&sorted(&first_column())), 0.4657092961871217, 1e-12);
-    close(quantile(&[1.0, 2.0, 4.0, 8.0], 0.4), 2.4, 1e-12);
-    for (successes, trials, low, high) in [
-        (0, 10, 0.0, 0.2775327998628892),
-        (81, 263, 0.2552885198782742, 0.36620957698280004),
-        (15, 148, 0.06238639953073628, 0.16048724172330803),
-    ] {
-        let interval = wilson(successes, trials);
-        close(interval.low, low, 1e-12);
-        close(interval.high, high, 1e-12);
-    }
-    assert!(mean(&[]).is_nan() && wilson(0, 0).low.is_nan() && bootstrap(&[], mean, 10).low.is_nan());
-    close(share_below(&[0.4, 0.5, 0.6, 0.1], 0.5), 0.5, 0.0);
-}
-
-/// NumPy on the first column. The mean: a million resamples. The interquartile mean of 7 values takes few values, so the
-/// ends are those whose exact distribution function (all 1,716 resamples, weighted) is within three Monte-Carlo errors.
-#[test]
-fn bootstrap_intervals_match_numpy() {
-    let column = first_column();
-    let interval = bootstrap(&column, mean, 50_000);
-    close(interval.low, 0.24587364, 0.003);
-    close(interval.high, 0.63973337, 0.003);
-    let interval = bootstrap(&column, interquartile_mean, 50_000);
-    assert!((0.2006..=0.2142).contains(&interval.low), "{interval:?}");
-    assert!((0.6741..=0.6792).contains(&interval.high), "{interval:?}");
-    assert_eq!(bootstrap(&column, mean, 1000), bootstrap(&column, mean, 1000));
-    let (difference, interval) = paired_difference(&column, &column, 100);
-    assert_eq!((difference, interval.low, interval.high), (0.0, 0.0, 0.0));
-}
-
-#[test]
-fn resampled_indices_are_uniform() {
-    let (mut draws, mut counts) = (Resampler::new(7), [0_u32; 7]);
-    for _ in 0..70_000 {
-        counts[draws.index(7)] += 1;
-    }
-    let squares: f64 = counts.iter().map(|&count| (f64::from(count) - 10_000.0).powi(2) / 10_000.0).sum();
-    assert!(squares < 22.5, "chi-squared {squares} with 6 degrees of freedom: {counts:?}");
-    assert_eq!(Resampler::new(7).index(0), 0);
-}
-
-/// Normal data, n = 20: simulated coverage of the nominal 95 percent interval is 93 +- 0.7 percent for both.
-#[test]
-fn bootstrap_intervals_cover() {
-    let mut draws = Resampler::new(20);
-    let mut uniform = || (draws.index(1 << 30) as f64 + 0.5) / f64::from(1 << 30);
-    for statistic in [mean, |values: &[f64]| interquartile_mean(values)] {
-        let covered = (0..1000).filter(|_| {
-            let normal: Vec<f64> = (0..20).map(|_| (0..12).map(|_| uniform()).sum::<f64>() - 6.0).collect();
-            let interval = bootstrap(&normal, statistic, 1000);
-            interval.low <= 0.0 && 0.0 <= interval.high
-        });
-        let covered = covered.count();
-        assert!((905..=965).contains(&covered), "{covered} of 1000");
-    }
 }
 
 const OFFICE: &str = include_str!("../../configs/worlds/office.toml");
@@ -224,13 +130,21 @@ fn a_report_is_complete_and_the_same_every_time() {
     run_folder(&dir, 32);
     let written = write(&dir).unwrap();
     let names: Vec<_> = written.iter().map(|path| path.strip_prefix(&dir).unwrap().to_str().unwrap()).collect();
-    for name in ["learning-dock", "steps-dock", "actions-recharge", "figure-2b-paper", "world", "sonar-L1", "light-L2"]
-    {
+    for name in [
+        "profile-dock",
+        "learning-dock",
+        "steps-dock",
+        "actions-recharge",
+        "figure-2b-paper",
+        "world",
+        "sonar-L1",
+        "light-L2",
+    ] {
         assert!(names.contains(&format!("figures/{name}.svg").as_str()), "{names:?}");
         assert!(names.contains(&format!("figures/{name}.png").as_str()), "{names:?}");
     }
     // Figure 2 (only its tests), equal cost, rooms; two skills; the world and its places.
-    assert_eq!((names.len(), names.last()), (2 * (2 + 4 + 2 + 2 * 3 + 1 + 3 * 2) + 1, Some(&"report.html")));
+    assert_eq!((names.len(), names.last()), (2 * (2 + 4 + 2 + 2 * 4 + 1 + 3 * 2) + 1, Some(&"report.html")));
     let bytes: Vec<_> = written.iter().map(|path| fs::read(path).unwrap()).collect();
     assert_eq!(write(&dir).unwrap(), written);
     for (path, bytes) in written.iter().zip(&bytes) {
@@ -259,6 +173,8 @@ fn the_page_stands_alone_and_says_what_it_must() {
         "hierarchical minus monolithic",
         "commit 0123456789ab",
         "n = 7 seeds",
+        "performance profile",
+        "BCa bootstrap",
         "percentile bootstrap",
         "planner (bound)",
         "until 80% of a seed",
@@ -273,7 +189,7 @@ fn seeds_that_are_missing_are_said_not_averaged_over() {
     let (names, mut rows) = synthetic(4);
     rows.retain(|row| !(row.arm == 0 && row.skill == 0 && row.trials == 150 && row.seed == 2));
     rows.retain(|row| !(row.arm == 1 && row.seed == 3));
-    let summary = summarise(&names, &rows, &[0, 1, 2, 3]);
+    let summary = summarise(&names, &rows, &[0, 1, 2, 3], &[]);
     let (dock, recharge) = (&summary.skills[0], &summary.skills[1]);
     assert_eq!((dock.name.as_str(), dock.series.len()), ("dock", 4));
     assert!(dock.series[0].cells.iter().all(|cell| cell.trials != 150 && cell.scores.len() == 4));
@@ -308,7 +224,7 @@ fn sweep_points_are_series_of_their_own() {
     second.iter_mut().for_each(|row| row.point = 1);
     rows.extend(second);
     let labels: Vec<_> =
-        summarise(&names, &rows, &[0, 1]).skills[0].series.iter().map(|series| series.label.clone()).collect();
+        summarise(&names, &rows, &[0, 1], &[]).skills[0].series.iter().map(|series| series.label.clone()).collect();
     assert_eq!(labels, ["hierarchical, point 0", "hierarchical, point 1"]);
 }
 

@@ -38,7 +38,7 @@ impl Experiment {
     pub(crate) fn tiny() -> Self {
         let config = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/docking.toml");
         let set = CUTS.iter().map(|&cut| cut.to_owned()).collect();
-        let plan = load(&config, &Overrides { set, seeds: Some("0..2".to_owned()) }).unwrap();
+        let plan = load(&config, &Overrides { set, seeds: Some("0..2".to_owned()), ..Overrides::default() }).unwrap();
         let groups = groups(&plan).unwrap();
         Self { plan, groups }
     }

@@ -1,0 +1,125 @@
+//! Sums the rows of the table of tests.
+
+use super::{Altered, Arm, Bound, Cell, Diverged, Score, Series, Skill, Summary, diverged as divergence};
+use crate::record::tables::{PLANNER, TRAINED};
+use crate::record::{EvaluationRow, Names};
+use crate::report::numbers::seeds as seed_count;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// One score per room, by seed.
+pub(super) type Seeds = BTreeMap<u32, Vec<Score>>;
+/// The same by training trials, or by variant.
+pub(super) type Cells = BTreeMap<u32, Seeds>;
+/// Skill, arm and sweep point.
+pub(super) type Key = (u32, u32, u32);
+
+/// Sums the rows and sorts them by skill, arm, sweep point, trials and seed. A test that some seeds of its series lack
+/// is left out, with a warning: an average over the seeds that happen to be there would mislead. Learners that diverged
+/// lack no test: those that they did not live to see count as failed.
+pub fn summarise(names: &Names, rows: &[EvaluationRow], seeds: &[u32], diverged: &[Diverged]) -> Summary {
+    let rooms = names.rooms.len();
+    let mut sums: BTreeMap<Key, Cells> = BTreeMap::new();
+    let mut altered: BTreeMap<Key, Cells> = BTreeMap::new();
+    let mut bounds: BTreeMap<(u32, u32), Vec<Score>> = BTreeMap::new();
+    for row in rows.iter().filter(|row| row.episodes > 0) {
+        let key = (row.skill, row.arm, row.point);
+        let scores = if of_planner(names, row.arm).is_some() {
+            bounds.entry((row.skill, row.arm)).or_default()
+        } else if names.variants[row.variant as usize] == TRAINED {
+            sums.entry(key).or_default().entry(row.trials).or_default().entry(row.seed).or_default()
+        } else {
+            altered.entry(key).or_default().entry(row.variant).or_default().entry(row.seed).or_default()
+        };
+        scores.resize(rooms, Score::default());
+        scores[row.room as usize].add(&row.into());
+    }
+    divergence::complete(names, diverged, &mut sums, &mut altered);
+    let swept = sums.keys().any(|&(_, _, point)| point > 0);
+    let mut summary = Summary {
+        rooms: names.rooms.clone(),
+        arms: arms(names, rows),
+        diverged: diverged.to_vec(),
+        ..Summary::default()
+    };
+    for (code, name) in names.skills.iter().enumerate() {
+        let code = code as u32;
+        let mut skill = Skill { name: name.clone(), series: Vec::new(), bounds: Vec::new() };
+        for (&(_, arm), rooms) in bounds.range((code, 0)..=(code, u32::MAX)) {
+            let arm = of_planner(names, arm).flatten().map(str::to_owned);
+            skill.bounds.push(Bound { arm, score: total(rooms), rooms: rooms.clone() });
+        }
+        for (key, cells) in sums.range((code, 0, 0)..=(code, u32::MAX, u32::MAX)) {
+            let arm = &names.arms[key.1 as usize];
+            let label = if swept { format!("{arm}, point {}", key.2) } else { arm.clone() };
+            let cells = complete(&format!("{name}, {label}"), cells, seeds, &mut summary.warnings);
+            let altered = altered.get(key).into_iter().flatten().map(|(variant, seeds)| Altered {
+                variant: names.variants[*variant as usize].clone(),
+                scores: seeds.values().map(|rooms| total(rooms)).collect(),
+            });
+            if !cells.is_empty() {
+                let altered = altered.collect();
+                skill.series.push(Series { arm: arm.clone(), point: key.2, label, cells, altered });
+            }
+        }
+        if !skill.series.is_empty() || !skill.bounds.is_empty() {
+            summary.skills.push(skill);
+        }
+    }
+    summary
+}
+
+/// Whether an arm's rows are the planner's own tests, and if so, of which arm's task if not of the first.
+fn of_planner(names: &Names, arm: u32) -> Option<Option<&str>> {
+    let rest = names.arms[arm as usize].strip_prefix(PLANNER)?;
+    let task = rest.strip_prefix('-').filter(|task| names.arms.iter().any(|name| name == task));
+    (rest.is_empty() || task.is_some()).then_some(task)
+}
+
+/// An arm's rows come in the order of its tests, so the root's come last.
+fn arms(names: &Names, rows: &[EvaluationRow]) -> Vec<Arm> {
+    let mut skills: BTreeMap<u32, (u32, BTreeSet<u32>)> = BTreeMap::new();
+    let learned = |row: &&EvaluationRow| of_planner(names, row.arm).is_none();
+    for row in rows.iter().filter(learned) {
+        let (root, all) = skills.entry(row.arm).or_default();
+        *root = row.skill;
+        all.insert(row.skill);
+    }
+    let arm = |(arm, (root, all)): (u32, (u32, BTreeSet<u32>))| Arm {
+        name: names.arms[arm as usize].clone(),
+        root: names.skills[root as usize].clone(),
+        hierarchical: all.len() > 1,
+    };
+    skills.into_iter().map(arm).collect()
+}
+
+fn complete(what: &str, cells: &Cells, seeds: &[u32], warnings: &mut Vec<String>) -> Vec<Cell> {
+    let all: BTreeSet<u32> = cells.values().flat_map(BTreeMap::keys).copied().collect();
+    let absent = seeds.iter().filter(|seed| !all.contains(seed)).count();
+    if absent > 0 {
+        warnings.push(format!("{what}: {absent} of {} have no tests at all.", seed_count(seeds.len())));
+    }
+    let mut kept = Vec::new();
+    for (&trials, seeds) in cells {
+        if seeds.len() == all.len() {
+            let rooms = seeds.values().next().map_or(0, Vec::len);
+            let room = |room: usize| {
+                let scores = seeds.values().map(move |rooms| rooms[room]);
+                scores.filter(|score| score.episodes > 0).collect()
+            };
+            let scores = seeds.values().map(|rooms| total(rooms)).collect();
+            kept.push(Cell { trials, scores, rooms: (0..rooms).map(room).collect() });
+        } else {
+            let (has, of) = (seeds.len(), all.len());
+            warnings.push(format!("{what}: left out after {trials} trials, where {has} of {of} seeds were tested."));
+        }
+    }
+    kept
+}
+
+fn total(rooms: &[Score]) -> Score {
+    let mut sum = Score::default();
+    for room in rooms.iter().filter(|room| room.episodes > 0) {
+        sum.add(room);
+    }
+    sum
+}

@@ -1,0 +1,172 @@
+//! Pages of sweeps of several designs.
+
+use super::{ROWS, SEEDS, TESTS, axis, folder, grid, known, names, peak, rows, summary, thresholds};
+use crate::{OFFICE, close, scratch};
+use skilltree::record::sweep::{Axis, AxisValue, Design, FILE, Scale, write_sweep};
+use skilltree::record::tables::write_evaluations;
+use skilltree::record::{Provenance, RunFolder, Sweep};
+use skilltree::report::sweep::{Swept, effect, levels};
+use skilltree::report::{text, write};
+use std::fs;
+
+#[test]
+fn the_page_and_the_terminal_say_what_was_found() {
+    let dir = scratch("report-sweep");
+    let (names, rows) = known();
+    folder(&dir, &thresholds(), &names, &rows, SEEDS);
+    let written = write(&dir).unwrap();
+    let files: Vec<_> = written.iter().map(|path| path.strip_prefix(&dir).unwrap().to_str().unwrap()).collect();
+    for name in [
+        "sweep-hierarchical-skill-recharge-applicable-dock-learning-rate",
+        "sweep-hierarchical-values-learning-rate",
+        "sweep-hierarchical-profile-skill-recharge-applicable-dock",
+        "sweep-hierarchical-criterion-learning-rate",
+    ] {
+        assert!(files.contains(&format!("figures/{name}.svg").as_str()), "{name}: {files:?}");
+    }
+    assert!(!files.iter().any(|file| file.contains("sweep-monolithic")), "{files:?}");
+    // Curves of one point of each arm, not of thirty.
+    let curves = fs::read_to_string(dir.join("figures/learning-recharge.svg")).unwrap();
+    assert!(curves.contains("hierarchical, point 0") && !curves.contains("point 1"));
+    let page = fs::read_to_string(dir.join("report.html")).unwrap();
+    for said in [
+        "30 points, a grid, over 2 axes",
+        "The highest mean is at point 12 (dock threshold 0.05, rate 0.3): 90.5% [",
+        "monolithic, whose only point is 0",
+        "n = 24 seeds",
+        "percentile bootstrap",
+        "--arm hierarchical --point 12 --seeds 23 --out report-sweep-hierarchical-p12-23",
+        "<td>16 of 24</td><td>250 [200, more than 300]</td>",
+        "each arm at its first point alone",
+    ] {
+        assert!(page.contains(said), "{said}");
+    }
+    assert!(!page.contains("NaN") && !page.contains("inf"));
+    let said = text(&dir).unwrap();
+    assert!(said.contains("best: point 12 (dock threshold 0.05, rate 0.3): 90.5% ["), "{said}");
+    assert!(said.contains("dock threshold: from 42.7% at 0.5 to 85.5% at 0.05: +42.8 ["), "{said}");
+    assert!(said.contains("16 of 24 seeds reach 90%; median trials 250 [200, more than 300]"), "{said}");
+    assert_eq!(write(&dir).unwrap(), written);
+    assert_eq!(fs::read_to_string(dir.join("report.html")).unwrap(), page);
+}
+
+/// Three axes: margins over the third for each pair, and slices of the first pair; one axis is of words.
+#[test]
+fn further_axes_are_margins_and_slices() {
+    let dir = scratch("report-sweep-three");
+    let worlds = Axis {
+        key: "world".into(),
+        label: "office".into(),
+        scale: Scale::List,
+        values: ["worlds/office.toml", "worlds/office-hard.toml"].map(|file| AxisValue::Text(file.into())).into(),
+    };
+    let mut axes = thresholds().axes;
+    axes.push(worlds);
+    let names = names(&["hierarchical"]);
+    let rows = rows(1, 60, 8, |_, point, seed| {
+        let (cell, hard) = (point / 2, point % 2);
+        Some((peak(cell / ROWS, cell % ROWS, seed).saturating_sub(8 * hard), 40))
+    });
+    let sweep = grid(axes);
+    folder(&dir, &sweep, &names, &rows, 8);
+    let written = write(&dir).unwrap();
+    let maps = |part: &str| written.iter().filter(|path| path.display().to_string().contains(part)).count();
+    assert_eq!((maps("-slice-"), maps("applicable-dock-world."), maps("learning-rate-world.")), (4, 2, 2));
+    let page = fs::read_to_string(dir.join("report.html")).unwrap();
+    assert!(page.contains("At office office-hard.") && page.contains("mean over up to 2 points on the other axes"));
+    assert!(text(&dir).unwrap().contains("Only 8 seeds"));
+    let swept = Swept::new(sweep, &summary(&names, &rows, 8, &[]), &(0..8).collect::<Vec<_>>());
+    let offices = levels(&swept.sweep, &swept.surfaces[0], 2);
+    assert_eq!(offices.iter().map(|level| level.label.as_str()).collect::<Vec<_>>(), ["office", "office-hard"]);
+    assert_eq!(offices[1].points.len(), 30);
+}
+
+/// Points drawn at random, one axis logarithmic: classes of equally many points, and a dot for each.
+#[test]
+fn random_points_are_put_into_classes() {
+    let values: Vec<(f64, f64)> =
+        (0..40).map(|i| (10_f64.powf(f64::from(i * 7 % 40) / 20.0 - 3.0), f64::from(i * 13 % 40) / 40.0)).collect();
+    let ascending = |mut values: Vec<f64>| {
+        values.sort_by(f64::total_cmp);
+        values
+    };
+    let sweep = Sweep {
+        design: Design::Random,
+        axes: vec![
+            axis("learning.rate", "rate", Scale::Log, &ascending(values.iter().map(|point| point.0).collect())),
+            axis("learning.lambda", "lambda", Scale::Linear, &ascending(values.iter().map(|point| point.1).collect())),
+        ],
+        points: values.iter().map(|(a, b)| vec![AxisValue::Number(*a), AxisValue::Number(*b)]).collect(),
+    };
+    let names = names(&["hierarchical"]);
+    // Better the nearer the rate is to 0.01, whatever lambda is.
+    let rows = rows(1, 40, 12, |_, point, seed| {
+        let away = (values[point as usize].0.log10() + 2.0).abs();
+        Some(((38.0 - 25.0 * away) as u32 - (seed + point) % 5, 30))
+    });
+    let swept = Swept::new(sweep.clone(), &summary(&names, &rows, 12, &[]), &(0..12).collect::<Vec<_>>());
+    let rates = levels(&sweep, &swept.surfaces[0], 0);
+    assert!(rates.len() == 5 && rates.iter().all(|level| level.points.len() == 8));
+    assert_eq!(effect(&rates).unwrap().0, 2);
+    let lambdas = levels(&sweep, &swept.surfaces[0], 1);
+    // NumPy, on the same numbers.
+    close(effect(&rates).unwrap().2, 0.44921875, 1e-12);
+    close(effect(&lambdas).unwrap().2, 0.030468750000000044, 1e-12);
+    let best = swept.surfaces[0].best().number as usize;
+    assert!((values[best].0.log10() + 2.0).abs() < 0.11, "{}", values[best].0);
+    let dir = scratch("report-sweep-random");
+    folder(&dir, &sweep, &names, &rows, 12);
+    write(&dir).unwrap();
+    let svg = fs::read_to_string(dir.join("figures/sweep-hierarchical-learning-rate-learning-lambda.svg")).unwrap();
+    // A rim and a fill for each point.
+    assert!(svg.matches("<circle").count() >= 80);
+    assert!(svg.contains(">\n0.001\n<") && svg.contains(">\n0.1\n<"));
+}
+
+#[test]
+fn failures_are_read_from_the_run() {
+    let (names, mut rows) = known();
+    rows.retain(|row| !(row.arm == 0 && row.point == 12 && row.seed == 5 && row.trials > 25));
+    let dir = scratch("report-sweep-failures");
+    let failures =
+        r#"[{"arm":"hierarchical","point":12,"seed":5,"skill":"recharge","trial":31,"what":"a weight is NaN"}]"#;
+    let provenance = Provenance { seeds: (0..SEEDS).collect(), ..Provenance::default() };
+    let files = [
+        ("evaluations.parquet".to_owned(), write_evaluations(&rows, &names).unwrap()),
+        ("failures.json".to_owned(), failures.as_bytes().to_vec()),
+        (FILE.to_owned(), write_sweep(&thresholds()).unwrap()),
+    ];
+    RunFolder::open(&dir, "", &[("world.toml", OFFICE)]).unwrap().finish(files, provenance).unwrap();
+    let said = text(&dir).unwrap();
+    assert!(said.contains("1 learner diverged") && said.contains("seed 5 in trial 31 of recharge"), "{said}");
+    assert!(said.contains("    diverged\n      skilltree run "), "{said}");
+}
+
+#[test]
+fn points_that_lack_seeds_are_left_out_and_named() {
+    let (names, mut rows) = known();
+    rows.retain(|row| !(row.arm == 0 && row.point == 12 && row.seed == 5));
+    let dir = scratch("report-sweep-lacking");
+    folder(&dir, &thresholds(), &names, &rows, SEEDS);
+    write(&dir).unwrap();
+    let page = fs::read_to_string(dir.join("report.html")).unwrap();
+    assert!(page.contains("left out: hierarchical, point 12 (23 seeds have tests)"));
+    assert!(page.contains("The highest mean is at point 8 "));
+    assert!(text(&dir).unwrap().contains("left out, as seeds are missing: hierarchical, point 12 (23 seeds"));
+}
+
+/// Ten thousand learners: 100 points of four axes with 100 seeds.
+#[test]
+fn a_large_sweep_has_a_small_page() {
+    let dir = scratch("report-sweep-large");
+    let values = |count: u32| (0..count).map(|i| 0.1 * f64::from(i + 1)).collect::<Vec<_>>();
+    let axes = [("a", 5), ("b", 5), ("c", 2), ("d", 2)];
+    let sweep = grid(axes.iter().map(|&(key, count)| axis(key, key, Scale::Linear, &values(count))).collect());
+    let names = names(&["hierarchical"]);
+    let rows = rows(1, 100, 100, |_, point, seed| Some((peak(point / 20, point / 4 % 5, seed), 20 + point % 4)));
+    assert_eq!(rows.len(), 10_000 * TESTS.len());
+    folder(&dir, &sweep, &names, &rows, 100);
+    write(&dir).unwrap();
+    let bytes = fs::metadata(dir.join("report.html")).unwrap().len();
+    assert!((200_000..5_000_000).contains(&bytes), "{bytes} bytes");
+}
