@@ -114,7 +114,7 @@ fn command_lines() {
             let mut lines = text.lines().map(str::to_owned);
             let seeds = lines.next();
             let set: Vec<String> = std::iter::once(small.to_owned()).chain(lines).collect();
-            again(desk.path(), &config, &Overrides { set, seeds })
+            again(desk.path(), &config, &Overrides { set, seeds, ..Overrides::default() })
         },
     )
     .conclude("command_lines");
