@@ -2,7 +2,7 @@
 //!
 //! For `probe`, benchmarks and callers that decide for themselves. Twin: `shaders/step.wgsl`.
 
-use crate::learner::layout::{BASE_WORDS, Dispatch, Noise, Robot};
+use crate::learner::layout::{BASE_WORDS, Noise, Robot};
 use crate::learner::memory::{Scratch, Shared};
 use crate::math::rng::{Purpose, Stream, noise, roll};
 use crate::robot::motion::{NO_ACTION, move_body};
@@ -10,7 +10,7 @@ use crate::skill::observe::{DICE_ACTUATOR, observe};
 
 /// Carries out the robot's action `dispatch.quanta` times, sensing after each.
 #[inline(always)]
-pub fn step(robot: &mut Robot, shared: &Shared, dispatch: &Dispatch) {
+pub fn step(robot: &mut Robot, shared: &Shared) {
     let mut scratch = Scratch::default();
     let terms = Noise {
         kind: robot.noise_kind,
@@ -19,27 +19,25 @@ pub fn step(robot: &mut Robot, shared: &Shared, dispatch: &Dispatch) {
         light: robot.noise_light,
         compass: robot.noise_compass,
     };
-    for _quantum in 0..dispatch.quanta {
-        let stream = Stream {
-            key: [robot.run_seed, robot.robot_seed],
-            skill: 0,
-            trial: 0,
-            step: robot.step,
-            purpose: Purpose::Given as u32,
-        };
-        let dice = roll(stream);
-        if robot.action != NO_ACTION {
-            let slip = terms.actuator * noise(terms.kind, dice.x[DICE_ACTUATOR], dice.y[DICE_ACTUATOR]) + 1.0;
-            let moved = move_body(&shared.floor, robot.x, robot.y, robot.heading, robot.action, slip);
-            robot.x = moved.x;
-            robot.y = moved.y;
-            robot.heading = moved.heading;
-            robot.bumpers = moved.bumpers;
-            robot.events = moved.events;
-        }
-        observe(shared, &mut scratch, &dice, robot.x, robot.y, robot.heading, robot.bumpers, terms);
-        robot.step += 1;
+    let stream = Stream {
+        key: [robot.run_seed, robot.robot_seed],
+        skill: 0,
+        trial: 0,
+        step: robot.step,
+        purpose: Purpose::Given as u32,
+    };
+    let dice = roll(stream);
+    if robot.action != NO_ACTION {
+        let slip = terms.actuator * noise(terms.kind, dice.x[DICE_ACTUATOR], dice.y[DICE_ACTUATOR]) + 1.0;
+        let moved = move_body(&shared.floor, robot.x, robot.y, robot.heading, robot.action, slip);
+        robot.x = moved.x;
+        robot.y = moved.y;
+        robot.heading = moved.heading;
+        robot.bumpers = moved.bumpers;
+        robot.events = moved.events;
     }
+    observe(shared, &mut scratch, &dice, robot.x, robot.y, robot.heading, robot.bumpers, terms);
+    robot.step += 1;
     for word in 0..BASE_WORDS {
         robot.record[word] = scratch.record[word];
     }

@@ -60,7 +60,7 @@ impl Bench {
         let plan = plan(set);
         let shape = Shape::new(plan.world(), &[&plan.arms[0]]).expect("the skill fits");
         let (settings, cursor, nets) = shape.learner(&plan.arms[0], plan.run_seed, 0);
-        let floor = Floor::new(&shape.atlas.plan);
+        let floor = Floor::new(&shape.atlas.plan, &shape.atlas.words);
         Self {
             shared: Shared { floor, skills: shape.skills, atlas: shape.atlas.words, bank: vec![0; 4096] },
             settings,

@@ -11,7 +11,8 @@ use skilltree::experiment::senses::{SILENT, Senses, floor_only, robot_at};
 use skilltree::learner::layout::{RAYS, Robot};
 use skilltree::learner::memory::Shared;
 use skilltree::math::functions::sin_cos;
-use skilltree::robot::collide::bumpers;
+use skilltree::robot::collide::{bumpers, sweep};
+use skilltree::robot::floor::{Floor, LISTED_TRAVEL};
 use skilltree::robot::light::in_sight;
 use skilltree::robot::motion::{BACKWARD, COLLISION, DOCKED, FORWARD, Moved, PASSED_DOOR, move_body};
 use skilltree::robot::sonar::{ranges, rays};
@@ -55,7 +56,7 @@ impl Place {
     fn ranges(&self, pose: Pose) -> [f32; RAYS] {
         let (sine, cosine) = sin_cos(pose.heading);
         let (ux, uy) = rays(cosine, sine);
-        let found = ranges(&self.shared.floor, &self.shared.atlas, pose.x, pose.y, &ux, &uy);
+        let found = ranges(&self.shared.floor, pose.x, pose.y, &ux, &uy);
         std::array::from_fn(|ray| found[ray])
     }
 }
@@ -209,30 +210,62 @@ fn sonar_is_exact_in_whole_inches_along_the_axes() {
     }
 }
 
+/// A floor whose cells list all segments.
+fn unculled(place: &Place) -> Floor {
+    let mut plan = place.shared.floor.plan;
+    let cells = plan.cell_columns * plan.cell_rows;
+    let starts = (0..=cells).map(|cell| cells + 1 + cell * plan.segments);
+    let atlas: Vec<u32> = starts.chain((0..cells).flat_map(|_| 0..plan.segments)).collect();
+    (plan.cell_starts, plan.sight_starts) = (0, 0);
+    Floor::new(&plan, &atlas)
+}
+
 #[test]
-fn culled_segment_lists_change_no_bit_of_any_range() {
+fn culled_segment_lists_change_no_bit_of_any_sense() {
     for place in places() {
-        let mut whole = place.shared.clone();
-        let cells = (whole.floor.plan.cell_columns * whole.floor.plan.cell_rows) as usize;
-        let segments = whole.floor.plan.segments;
-        // Every cell bounds its own copy of the list of all segments.
-        let starts = (0..=cells as u32).map(|cell| cells as u32 + 1 + cell * segments);
-        whole.atlas = starts.chain((0..cells as u32).flat_map(|_| 0..segments)).collect();
-        whole.floor.plan.cell_starts = 0;
+        let (culled, full) = (&place.shared.floor, unculled(&place));
         let mut next = stream(12);
-        let mut shorter = 0;
+        let (mut shorter, mut dark) = (0, 0);
         for _ in 0..4000 {
             let pose = place.pose(&mut next, 0.0);
+            let (x, y) = (pose.x, pose.y);
             let (sine, cosine) = sin_cos(pose.heading);
             let (ux, uy) = rays(cosine, sine);
-            let culled = ranges(&place.shared.floor, &place.shared.atlas, pose.x, pose.y, &ux, &uy);
-            let full = ranges(&whole.floor, &whole.atlas, pose.x, pose.y, &ux, &uy);
-            assert_eq!(culled.map(f32::to_bits), full.map(f32::to_bits), "{}: {pose:?}", place.name);
-            let cell = (pose.y / 12.0) as u32 * whole.floor.plan.cell_columns + (pose.x / 12.0) as u32;
-            let list = &place.shared.atlas[cell as usize..];
-            shorter += u32::from(list[1] - list[0] < segments);
+            let found = [culled, &full].map(|floor| ranges(floor, x, y, &ux, &uy).map(f32::to_bits));
+            assert_eq!(found[0], found[1], "{}: {pose:?}", place.name);
+            assert_eq!(in_sight(culled, x, y), in_sight(&full, x, y), "{}: {pose:?}", place.name);
+            dark += u32::from(!in_sight(culled, x, y));
+            shorter += u32::from(culled.audible(x, y).1 < full.audible(x, y).1);
         }
-        assert!(place.name != "office" || shorter > 1000, "the lists leave something out: {shorter}");
+        assert!(shorter > 1000, "{}: the lists leave something out at {shorter} poses", place.name);
+        assert!(dark > 200, "{}: the light is hidden at {dark} poses", place.name);
+    }
+}
+
+#[test]
+fn lists_of_what_can_be_touched_change_no_bit_of_any_move() {
+    for place in places() {
+        let floor = &place.shared.floor;
+        let cosine_of_docking = floor.plan.dock_cosine;
+        let mut next = stream(17);
+        let (mut shorter, mut stops) = (0, 0);
+        for _ in 0..20_000 {
+            let pose = place.pose(&mut next, 0.0);
+            let reach = next() as f32 * LISTED_TRAVEL;
+            let (uy, ux) = sin_cos(pose.heading);
+            let near = floor.touchable(pose.x, pose.y, reach);
+            let [some, all] = [near, &floor.all].map(|list| {
+                let travel = sweep(list, cosine_of_docking, pose.x, pose.y, ux, uy, reach);
+                let (x, y) = (pose.x + ux * travel.distance, pose.y + uy * travel.distance);
+                (travel, bumpers(list, x, y, ux, uy))
+            });
+            assert_eq!(some, all, "{}: {pose:?} for {reach}", place.name);
+            shorter += u32::from(near.len() < floor.all.len());
+            stops += u32::from(all.0.blocked);
+        }
+        assert!(stops > 1000, "{}: {stops} moves were stopped", place.name);
+        assert!(place.name != "office" || shorter > 10_000, "{}: {shorter} lists leave something out", place.name);
+        assert_eq!(floor.touchable(100.0, 100.0, 1.01 * LISTED_TRAVEL).len(), floor.all.len());
     }
 }
 
@@ -391,7 +424,7 @@ fn bumpers_feel_four_sectors_within_the_gap() {
     let place = Place::of("room", Written::room(200.0, 200.0));
     let feel = |x: f32, y: f32, heading: f32| {
         let (sine, cosine) = sin_cos(heading);
-        bumpers(&place.shared.floor, x, y, cosine, sine)
+        bumpers(place.shared.floor.touchable(x, y, 0.0), x, y, cosine, sine)
     };
     for degrees in 0..360_i32 {
         if (degrees - 45) % 90 == 0 {
@@ -442,7 +475,8 @@ fn bumpers_match_the_oracle_at_poses_of_contact() {
             };
             let expected = touches.iter().filter(|t| t.0 < reach).fold(0, |bits, t| bits | sector(t.1));
             let (sine, cosine) = sin_cos(pose.heading);
-            let found = bumpers(&place.shared.floor, pose.x, pose.y, cosine, sine);
+            let near = place.shared.floor.touchable(pose.x, pose.y, 0.0);
+            let found = bumpers(near, pose.x, pose.y, cosine, sine);
             assert_eq!(found, expected, "{}: {pose:?} {touches:?}", place.name);
             judged += 1;
             for (side, count) in felt.iter_mut().enumerate() {

@@ -41,13 +41,19 @@ fn draw(stream: Stream, draw: u32) -> vec4<u32> {
     return philox(vec4<u32>(stream.trial, stream.step, (stream.purpose << 16u) | draw, stream.skill), stream.key);
 }
 
-// All random words of one primitive step: lane `l` holds draw number `l`.
+// The random words of one primitive step: entry `i` holds draw number `i`. Rays share the first six draws, a word
+// each, and so do the light's bearings theirs. The rest is named in `skill/observe`.
 var<workgroup> dice: array<vec4<u32>, LANES>;
 
 fn roll(lane: u32, stream: Stream) {
     workgroupBarrier();
     dice[lane] = draw(stream, lane);
     workgroupBarrier();
+}
+
+// The word of bearing `b`, whose six draws begin with number `first`: word `b` / 6 of draw `b` % 6.
+fn bearing_word(first: u32, b: u32) -> u32 {
+    return dice[first + b % 6u][b / 6u];
 }
 
 fn unit(word: u32) -> f32 {
@@ -62,5 +68,14 @@ fn noise(kind: u32, first: u32, second: u32) -> f32 {
     let sum = (first & 0xffffu) + (first >> 16u) + (second & 0xffffu) + (second >> 16u);
     let bell = f32(i32(sum) - 131070) * 2.64290e-5f;
     let flat = f32(i32(first & 0xffffu) * 2 - 65535) * 1.5259022e-5f;
+    return select(flat, bell, kind == 0u);
+}
+
+// `noise` from one word, on a coarser grid: four 8-bit uniforms summed, or 16 bits.
+fn coarse_noise(kind: u32, word: u32) -> f32 {
+    let pairs = (word & 0x00ff00ffu) + ((word >> 8u) & 0x00ff00ffu);
+    let sum = (pairs & 0xffffu) + (pairs >> 16u);
+    let bell = f32(i32(sum) - 510) * 6.765875e-3f;
+    let flat = f32(i32(word & 0xffffu) * 2 - 65535) * 1.5259022e-5f;
     return select(flat, bell, kind == 0u);
 }

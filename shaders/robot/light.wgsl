@@ -27,14 +27,23 @@ fn in_sight(lane: u32, x: f32, y: f32) -> bool {
     return lanes_or(lane, hidden) == 0u;
 }
 
-fn brightness(x: f32, y: f32, ux: f32, uy: f32) -> f32 {
+// Brightness of the light on a bearing that points at it, as if in sight; 1 is the threshold.
+fn falloff(x: f32, y: f32) -> f32 {
     let lx = world.light_x - x;
     let ly = world.light_y - y;
     let square = lx * lx + ly * ly;
     // The light itself is out of the robot's reach; the bound keeps the functions in their range.
     let distance2 = select(1.0f, square, square > 1.0f);
+    return world.light_range2 * reciprocal(distance2);
+}
+
+// Brightness of the light on a bearing, as if in sight, where it is `most` on a bearing that points at it.
+fn brightness(most: f32, x: f32, y: f32, ux: f32, uy: f32) -> f32 {
+    let lx = world.light_x - x;
+    let ly = world.light_y - y;
+    let square = lx * lx + ly * ly;
+    let distance2 = select(1.0f, square, square > 1.0f);
     let nearness = reciprocal_sqrt(distance2);
-    let falloff = world.light_range2 * reciprocal(distance2);
     let aim = (ux * lx + uy * ly) * nearness;
-    return falloff * exponential(SHARPNESS * (aim - 1.0f));
+    return most * exponential(SHARPNESS * (aim - 1.0f));
 }

@@ -3,9 +3,11 @@
 // A record's words: 0 to 5 the 24 sonar readings, a byte each; 6 the light bits and, from bit 24, the
 // bumpers; 7 the compass; 8 what was done (see `lesson/record`); 9 the reward.
 
-const DICE_ACTUATOR: u32 = 24u;
-const DICE_COMPASS: u32 = 25u;
-const DICE_CHOICE: u32 = 26u;
+const DICE_SONAR: u32 = 0u;
+const DICE_ACTUATOR: u32 = 6u;
+const DICE_COMPASS: u32 = 7u;
+const DICE_CHOICE: u32 = 8u;
+const DICE_LIGHT: u32 = 16u;
 
 var<workgroup> record: array<u32, RECORD_WORDS>;
 var<workgroup> readings: array<u32, LANES>;
@@ -13,15 +15,21 @@ var<workgroup> readings: array<u32, LANES>;
 fn observe(lane: u32, x: f32, y: f32, heading: f32, bumpers: u32, terms: Noise) {
     let turn = sin_cos(heading);
     let u = rays(lane, turn.y, turn.x);
-    let range = ranges(x, y, u.x, u.y);
-    let error = terms.sonar * noise(terms.kind, dice[lane].x, dice[lane].y) + 1.0f;
+    let range = ranges(lane, x, y, u.x, u.y);
+    let error = terms.sonar * coarse_noise(terms.kind, bearing_word(DICE_SONAR, lane % RAYS)) + 1.0f;
     readings[lane] = reading(range, error);
     var lit = 0u;
     if world.lit == 1u {
-        let seen = in_sight(lane, x, y);
-        let bright = brightness(x, y, u.x, u.y);
-        let glow = bright * (terms.light * noise(terms.kind, dice[lane].z, dice[lane].w) + 1.0f);
-        lit = lanes_or(lane, select(0u, 1u << lane, seen && glow > 1.0f && lane < RAYS));
+        let most = falloff(x, y);
+        // No noise reaches 3.5.
+        if most * (terms.light * 3.5f + 1.0f) > 1.0f && in_sight(lane, x, y) {
+            let ux = select(u.x, -u.x, lane >= LINES);
+            let uy = select(u.y, -u.y, lane >= LINES);
+            let bright = brightness(most, x, y, ux, uy);
+            let shift = coarse_noise(terms.kind, bearing_word(DICE_LIGHT, lane % RAYS));
+            let glow = bright * (terms.light * shift + 1.0f);
+            lit = lanes_or(lane, select(0u, 1u << lane, glow > 1.0f && lane < RAYS));
+        }
     }
     workgroupBarrier();
     if lane < 6u {

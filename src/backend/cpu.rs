@@ -118,7 +118,7 @@ dispatched! {
 
 dispatched! {
     /// Runs [`step`].
-    run_step, step_avx2, step_avx512 = step(robot: &mut Robot, shared: &Shared, dispatch: &Dispatch)
+    run_step, step_avx2, step_avx512 = step(robot: &mut Robot, shared: &Shared)
 }
 
 impl CpuBackend {
@@ -233,10 +233,13 @@ impl Backend for CpuBackend {
     }
 
     fn step(&mut self, shared: &Shared, robots: &mut [Robot], quanta: u32) -> Result<(), BackendError> {
-        let dispatch = Dispatch { quanta, ..Dispatch::zeroed() };
         let instructions = self.instructions;
         self.pool.install(|| {
-            robots.par_iter_mut().for_each(|robot| run_step(instructions, robot, shared, &dispatch));
+            robots.par_iter_mut().for_each(|robot| {
+                for _quantum in 0..quanta {
+                    run_step(instructions, robot, shared);
+                }
+            });
         });
         Ok(())
     }

@@ -204,7 +204,7 @@ impl Group {
 fn lay_out(members: &[&Arm], world: &crate::world::World) -> Result<(Shape, Shared), ShapeError> {
     let mut shape = Shape::new(world, members)?;
     let shared = Shared {
-        floor: Floor::new(&shape.atlas.plan),
+        floor: Floor::new(&shape.atlas.plan, &shape.atlas.words),
         skills: shape.skills.clone(),
         atlas: std::mem::take(&mut shape.atlas.words),
         bank: Vec::new(),

@@ -39,7 +39,7 @@ impl Senses {
 /// The memory that robots under given actions need: the floor and its segment lists, no skills.
 pub fn floor_only(world: &World) -> Shared {
     let atlas = Atlas::new(world);
-    Shared { floor: Floor::new(&atlas.plan), skills: Vec::new(), atlas: atlas.words, bank: Vec::new() }
+    Shared { floor: Floor::new(&atlas.plan, &atlas.words), skills: Vec::new(), atlas: atlas.words, bank: Vec::new() }
 }
 
 /// A robot that stands at a pose.

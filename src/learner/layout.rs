@@ -109,8 +109,8 @@ shared! {
         cell_rows: u32,
         /// Word of the atlas at which the cells' list starts stand.
         cell_starts: u32,
-        /// Keeps the arrays on 16 bytes.
-        padding: u32,
+        /// Word of the atlas at which the starts of the cells' lists of what can hide the light stand.
+        sight_starts: u32,
         /// The segments.
         segment: [Segment; MAX_SEGMENTS],
         /// The rooms.

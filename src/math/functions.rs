@@ -110,7 +110,7 @@ pub fn squash(x: f32) -> f32 {
 
 /// Sine and cosine of an angle in degrees, 0 to 720. Exact at multiples of 90.
 #[inline(always)]
-pub fn sin_cos(degrees: f32) -> (f32, f32) {
+pub const fn sin_cos(degrees: f32) -> (f32, f32) {
     let quarter = (degrees * 0.011_111_111_f32 + 0.5) as i32;
     // Exact: both terms are multiples of the angle's last place.
     let r = degrees - quarter as f32 * 90.0;

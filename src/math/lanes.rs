@@ -25,9 +25,9 @@ pub fn lanes_sums(partials: &mut Partials, children: u32) {
 
 /// Least of the lanes' values, none of which may be negative: their bits are compared as integers.
 #[inline(always)]
-pub fn lanes_min(values: &Lanes) -> f32 {
+pub fn lanes_min<const N: usize>(values: &[f32; N]) -> f32 {
     let mut least = 0x7f80_0000;
-    for lane in 0..LANES {
+    for lane in 0..N {
         let bits = values[lane].to_bits();
         least = if bits < least { bits } else { least };
     }
@@ -36,9 +36,9 @@ pub fn lanes_min(values: &Lanes) -> f32 {
 
 /// Bits set in any lane.
 #[inline(always)]
-pub fn lanes_or(values: &[u32; LANES]) -> u32 {
+pub fn lanes_or<const N: usize>(values: &[u32; N]) -> u32 {
     let mut bits = 0;
-    for lane in 0..LANES {
+    for lane in 0..N {
         bits |= values[lane];
     }
     bits

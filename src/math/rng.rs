@@ -72,19 +72,21 @@ pub fn mul_high(a: u32, b: u32) -> u32 {
 }
 
 /// Philox4x32-10.
+///
+/// Words stand in 64 bits, so that one product gives both of its halves; what the upper 32 hold besides is cut off
+/// before it is used.
 #[inline(always)]
 pub fn philox(counter: [u32; 4], key: [u32; 2]) -> [u32; 4] {
-    let mut c = counter;
+    const LOW: u64 = 0xffff_ffff;
+    let mut c = counter.map(u64::from);
     let mut k = key;
     for _round in 0..10 {
-        let high0 = mul_high(0xd251_1f53, c[0]);
-        let low0 = 0xd251_1f53_u32.wrapping_mul(c[0]);
-        let high1 = mul_high(0xcd9e_8d57, c[2]);
-        let low1 = 0xcd9e_8d57_u32.wrapping_mul(c[2]);
-        c = [high1 ^ c[1] ^ k[0], low1, high0 ^ c[3] ^ k[1], low0];
+        let product0 = 0xd251_1f53_u64 * (c[0] & LOW);
+        let product1 = 0xcd9e_8d57_u64 * (c[2] & LOW);
+        c = [(product1 >> 32) ^ c[1] ^ u64::from(k[0]), product1, (product0 >> 32) ^ c[3] ^ u64::from(k[1]), product0];
         k = [k[0].wrapping_add(0x9e37_79b9), k[1].wrapping_add(0xbb67_ae85)];
     }
-    c
+    c.map(|word| word as u32)
 }
 
 /// Four random words: draw number `draw` of a stream.
@@ -93,31 +95,76 @@ pub fn draw(stream: Stream, draw: u32) -> [u32; 4] {
     philox([stream.trial, stream.step, (stream.purpose << 16) | draw, stream.skill], stream.key)
 }
 
-/// All random words of one primitive step: lane `l` holds draw number `l`.
-#[derive(Debug, Clone, Copy)]
-pub struct Dice {
-    /// First word of every lane.
-    pub x: [u32; LANES],
-    /// Second word.
-    pub y: [u32; LANES],
-    /// Third word.
-    pub z: [u32; LANES],
-    /// Fourth word.
-    pub w: [u32; LANES],
+/// Draws of which one vector of 64-bit products holds all.
+const BATCH: usize = 8;
+
+/// Draws number `first` to `first` + 7 of a stream: word `w` of draw `first` + `i` is `[w][i]`.
+#[inline(always)]
+pub fn draws(stream: Stream, first: u32) -> [[u32; BATCH]; 4] {
+    let mut words = [[0; BATCH]; 4];
+    for i in 0..BATCH {
+        let drawn = draw(stream, first + i as u32);
+        words[0][i] = drawn[0];
+        words[1][i] = drawn[1];
+        words[2][i] = drawn[2];
+        words[3][i] = drawn[3];
+    }
+    words
 }
 
-/// Rolls the dice of one primitive step: the rays take lanes 0 to 23, the rest is named below.
+/// Draws that [`Dice`] holds.
+pub const DICE: usize = 16;
+
+/// The random words of one primitive step: entry `i` holds draw number `i`.
+///
+/// Rays share the first six draws, a word each; the light's bearings share six that are made where the light is seen
+/// ([`bearing_words`]). The rest is named in [`crate::skill::observe`].
+#[derive(Debug, Clone, Copy)]
+pub struct Dice {
+    /// What else is drawn from.
+    pub stream: Stream,
+    /// First word of every draw.
+    pub x: [u32; DICE],
+    /// Second word.
+    pub y: [u32; DICE],
+    /// Third word.
+    pub z: [u32; DICE],
+    /// Fourth word.
+    pub w: [u32; DICE],
+}
+
+/// Rolls the dice of one primitive step.
 #[inline(always)]
 pub fn roll(stream: Stream) -> Dice {
-    let mut dice = Dice { x: [0; LANES], y: [0; LANES], z: [0; LANES], w: [0; LANES] };
-    for lane in 0..LANES {
-        let words = draw(stream, lane as u32);
-        dice.x[lane] = words[0];
-        dice.y[lane] = words[1];
-        dice.z[lane] = words[2];
-        dice.w[lane] = words[3];
+    let mut dice = Dice { stream, x: [0; DICE], y: [0; DICE], z: [0; DICE], w: [0; DICE] };
+    let low = draws(stream, 0);
+    let high = draws(stream, BATCH as u32);
+    for i in 0..BATCH {
+        dice.x[i] = low[0][i];
+        dice.y[i] = low[1][i];
+        dice.z[i] = low[2][i];
+        dice.w[i] = low[3][i];
+    }
+    for i in 0..BATCH {
+        dice.x[BATCH + i] = high[0][i];
+        dice.y[BATCH + i] = high[1][i];
+        dice.z[BATCH + i] = high[2][i];
+        dice.w[BATCH + i] = high[3][i];
     }
     dice
+}
+
+/// A word for each of 24 bearings, from six draws: bearing `b` has word `b` / 6 of draw `b` % 6.
+#[inline(always)]
+pub fn bearing_words(x: &[u32], y: &[u32], z: &[u32], w: &[u32]) -> [u32; LANES] {
+    let mut words = [0; LANES];
+    for i in 0..6 {
+        words[i] = x[i];
+        words[6 + i] = y[i];
+        words[12 + i] = z[i];
+        words[18 + i] = w[i];
+    }
+    words
 }
 
 /// Uniform in [0, 1), on a grid of 2^-24.
@@ -139,6 +186,16 @@ pub fn noise(kind: u32, first: u32, second: u32) -> f32 {
     let sum = (first & 0xffff) + (first >> 16) + (second & 0xffff) + (second >> 16);
     let bell = (sum as i32 - 131_070) as f32 * 2.642_90e-5_f32;
     let flat = ((first & 0xffff) as i32 * 2 - 65_535) as f32 * 1.525_902_2e-5_f32;
+    if kind == 0 { bell } else { flat }
+}
+
+/// [`noise`] from one word, on a coarser grid: four 8-bit uniforms summed, or 16 bits.
+#[inline(always)]
+pub fn coarse_noise(kind: u32, word: u32) -> f32 {
+    let pairs = (word & 0x00ff_00ff) + ((word >> 8) & 0x00ff_00ff);
+    let sum = (pairs & 0xffff) + (pairs >> 16);
+    let bell = (sum as i32 - 510) as f32 * 6.765_875e-3_f32;
+    let flat = ((word & 0xffff) as i32 * 2 - 65_535) as f32 * 1.525_902_2e-5_f32;
     if kind == 0 { bell } else { flat }
 }
 

@@ -3,8 +3,7 @@
 //! Lanes are segments. Contact with a segment is contact with its line between the ends, or with one of
 //! its two end points; both are quadratic-free or a single square root.
 
-use super::floor::{Floor, SegmentBlock};
-use crate::learner::layout::LANES;
+use super::floor::{BLOCK, SegmentBlock};
 use crate::math::functions::{reciprocal, square_root};
 use crate::math::lanes::{lanes_min, lanes_or};
 
@@ -76,14 +75,14 @@ fn contact(block: &SegmentBlock, lane: usize, x: f32, y: f32, ux: f32, uy: f32) 
 
 /// Sweeps the disc from (`x`, `y`) along the unit vector (`ux`, `uy`) for at most `reach` inches.
 #[inline(always)]
-pub fn sweep(floor: &Floor, x: f32, y: f32, ux: f32, uy: f32, reach: f32) -> Travel {
-    let mut nearest = [FAR; LANES];
-    let mut charger = [0_u32; LANES];
-    for block in &floor.blocks {
-        for lane in 0..LANES {
+pub fn sweep(near: &[SegmentBlock], dock_cosine: f32, x: f32, y: f32, ux: f32, uy: f32, reach: f32) -> Travel {
+    let mut nearest = [FAR; BLOCK];
+    let mut charger = [0_u32; BLOCK];
+    for block in near {
+        for lane in 0..BLOCK {
             let (distance, cosine) = contact(block, lane, x, y, ux, uy);
             let closer = distance < nearest[lane];
-            let plug = block.charger[lane] == 1 && cosine >= floor.plan.dock_cosine;
+            let plug = block.charger[lane] == 1 && cosine >= dock_cosine;
             // Segments touched at once count together, on one lane as on several.
             let level = if distance == nearest[lane] { charger[lane] | u32::from(plug) } else { charger[lane] };
             charger[lane] = if closer { u32::from(plug) } else { level };
@@ -91,8 +90,8 @@ pub fn sweep(floor: &Floor, x: f32, y: f32, ux: f32, uy: f32, reach: f32) -> Tra
         }
     }
     let least = lanes_min(&nearest);
-    let mut plugs = [0_u32; LANES];
-    for lane in 0..LANES {
+    let mut plugs = [0_u32; BLOCK];
+    for lane in 0..BLOCK {
         plugs[lane] = if nearest[lane] == least { charger[lane] } else { 0 };
     }
     let plugged = lanes_or(&plugs);
@@ -102,10 +101,10 @@ pub fn sweep(floor: &Floor, x: f32, y: f32, ux: f32, uy: f32, reach: f32) -> Tra
 
 /// Bits of the bumpers that touch something: 1 front, 2 left, 4 back, 8 right. (`cosine`, `sine`) is the heading.
 #[inline(always)]
-pub fn bumpers(floor: &Floor, x: f32, y: f32, cosine: f32, sine: f32) -> u32 {
-    let mut bits = [0_u32; LANES];
-    for block in &floor.blocks {
-        for lane in 0..LANES {
+pub fn bumpers(near: &[SegmentBlock], x: f32, y: f32, cosine: f32, sine: f32) -> u32 {
+    let mut bits = [0_u32; BLOCK];
+    for block in near {
+        for lane in 0..BLOCK {
             let wx = x - block.ax[lane];
             let wy = y - block.ay[lane];
             let tx = block.tx[lane];

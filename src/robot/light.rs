@@ -4,11 +4,11 @@
 //! sight only. Our choice: the paper states 24 binary readings and no more. Near the charger several
 //! bearings are lit, far away one.
 
-use super::floor::Floor;
+use super::floor::{BLOCK, Floor};
 use crate::learner::layout::LANES;
 use crate::math::functions::{exponential, reciprocal, reciprocal_sqrt};
 use crate::math::lanes::{Lanes, lanes_or};
-use crate::robot::sonar::crossing;
+use crate::robot::sonar::{LINES, Lines, crossing};
 
 /// 1 / (15 degrees in radians)^2.
 const SHARPNESS: f32 = 14.590_25;
@@ -18,9 +18,9 @@ const SHARPNESS: f32 = 14.590_25;
 pub fn in_sight(floor: &Floor, x: f32, y: f32) -> bool {
     let lx = floor.plan.light_x - x;
     let ly = floor.plan.light_y - y;
-    let mut hidden = [0_u32; LANES];
-    for block in &floor.blocks {
-        for lane in 0..LANES {
+    let mut hidden = [0_u32; BLOCK];
+    for block in floor.hiding(x, y) {
+        for lane in 0..BLOCK {
             let ax = block.ax[lane] - x;
             let ay = block.ay[lane] - y;
             let bx = block.bx[lane] - x;
@@ -35,20 +35,33 @@ pub fn in_sight(floor: &Floor, x: f32, y: f32) -> bool {
     lanes_or(&hidden) == 0
 }
 
-/// Brightness of the light on each bearing, as if in sight; 1 is the threshold.
+/// Brightness of the light on a bearing that points at it, as if in sight; 1 is the threshold.
 #[inline(always)]
-pub fn brightness(floor: &Floor, x: f32, y: f32, ux: &Lanes, uy: &Lanes) -> Lanes {
+pub fn falloff(floor: &Floor, x: f32, y: f32) -> f32 {
     let lx = floor.plan.light_x - x;
     let ly = floor.plan.light_y - y;
     let square = lx * lx + ly * ly;
     // The light itself is out of the robot's reach; the bound keeps the functions in their range.
     let distance2 = if square > 1.0 { square } else { 1.0 };
+    floor.plan.light_range2 * reciprocal(distance2)
+}
+
+/// Brightness of the light on each bearing, as if in sight, where it is `most` on a bearing that points at it.
+#[inline(always)]
+pub fn brightness(floor: &Floor, most: f32, x: f32, y: f32, ux: &Lines, uy: &Lines) -> Lanes {
+    let lx = floor.plan.light_x - x;
+    let ly = floor.plan.light_y - y;
+    let square = lx * lx + ly * ly;
+    let distance2 = if square > 1.0 { square } else { 1.0 };
     let nearness = reciprocal_sqrt(distance2);
-    let falloff = floor.plan.light_range2 * reciprocal(distance2);
+    let mut aim = [0.0; LANES];
+    for line in 0..LINES {
+        aim[line] = (ux[line] * lx + uy[line] * ly) * nearness;
+        aim[LINES + line] = -aim[line];
+    }
     let mut bright = [0.0; LANES];
     for lane in 0..LANES {
-        let aim = (ux[lane] * lx + uy[lane] * ly) * nearness;
-        bright[lane] = falloff * exponential(SHARPNESS * (aim - 1.0));
+        bright[lane] = most * exponential(SHARPNESS * (aim[lane] - 1.0));
     }
     bright
 }

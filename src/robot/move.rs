@@ -50,18 +50,19 @@ pub fn move_body(floor: &Floor, x: f32, y: f32, heading: f32, action: u32, slip:
     let turned = wrap_degrees(heading + turn_of(action) * slip);
     let (sine, cosine) = sin_cos(turned);
     let mut moved = Moved { x, y, heading: turned, bumpers: 0, events: 0 };
+    let wanted = 12.0 * slip;
+    let reach = if wanted > 0.0 { wanted } else { 0.0 };
+    let near = floor.touchable(x, y, reach);
     if action == FORWARD || action == BACKWARD {
         let ux = if action == FORWARD { cosine } else { -cosine };
         let uy = if action == FORWARD { sine } else { -sine };
-        let wanted = 12.0 * slip;
-        let reach = if wanted > 0.0 { wanted } else { 0.0 };
-        let travel = sweep(floor, x, y, ux, uy, reach);
+        let travel = sweep(near, floor.plan.dock_cosine, x, y, ux, uy, reach);
         moved.x = x + ux * travel.distance;
         moved.y = y + uy * travel.distance;
         let docked = travel.connected && action == FORWARD;
         let stopped = if travel.blocked { COLLISION } else { 0 };
         moved.events = if docked { DOCKED } else { stopped };
     }
-    moved.bumpers = bumpers(floor, moved.x, moved.y, cosine, sine);
+    moved.bumpers = bumpers(near, moved.x, moved.y, cosine, sine);
     moved
 }

@@ -3,25 +3,50 @@
 //! Lanes are rays. A ray crosses a segment where its two ends lie on different sides of the ray; the
 //! distance is a ratio, and ratios are compared by cross-multiplying, so that one reciprocal is enough.
 
-use super::floor::Floor;
-use crate::learner::layout::LANES;
+use super::floor::{BLOCK, Floor};
+use crate::learner::layout::{LANES, RAYS};
 use crate::math::functions::{reciprocal, sin_cos};
 use crate::math::lanes::Lanes;
 
 /// Longest reading, inches (paper, section III).
 pub const SONAR_LIMIT: f32 = 127.0;
-/// Cells per inch of the culled segment lists.
-const CELLS_PER_INCH: f32 = 0.083_333_336;
+/// 1 / [`SONAR_LIMIT`].
+const INVERSE_LIMIT: f32 = 0.007_874_016;
+/// Segments whose line passes the robot closer than this, inches, are taken to pass at this distance: they are seen
+/// end on, and f32 cannot tell on which side the robot is.
+const SLIVER: f32 = 1.0e-4;
 
-/// Directions of the 24 rays of a robot with this heading; index 0 straight ahead, then counter-clockwise.
+/// Lines through the robot: a ray and the opposite one are on the same line.
+pub const LINES: usize = RAYS / 2;
+/// Elements of an array of lines: a vector's, [`LINES`] of them in use.
+pub const LINE_LANES: usize = 16;
+/// One f32 for each line.
+pub type Lines = [f32; LINE_LANES];
+
+const RAY_COSINE: Lines = ray_table().1;
+const RAY_SINE: Lines = ray_table().0;
+
+/// Sines and cosines of the lines' bearings.
+const fn ray_table() -> (Lines, Lines) {
+    let mut sines = [0.0; LINE_LANES];
+    let mut cosines = [0.0; LINE_LANES];
+    let mut line = 0;
+    while line < LINE_LANES {
+        (sines[line], cosines[line]) = sin_cos(line as f32 * 15.0);
+        line += 1;
+    }
+    (sines, cosines)
+}
+
+/// Directions of the first 12 rays of a robot with this heading; index 0 straight ahead, then counter-clockwise. The
+/// other 12 look the opposite ways.
 #[inline(always)]
-pub fn rays(cosine: f32, sine: f32) -> (Lanes, Lanes) {
-    let mut ux = [0.0; LANES];
-    let mut uy = [0.0; LANES];
-    for lane in 0..LANES {
-        let (ray_sine, ray_cosine) = sin_cos(lane as f32 * 15.0);
-        ux[lane] = cosine * ray_cosine - sine * ray_sine;
-        uy[lane] = sine * ray_cosine + cosine * ray_sine;
+pub fn rays(cosine: f32, sine: f32) -> (Lines, Lines) {
+    let mut ux = [0.0; LINE_LANES];
+    let mut uy = [0.0; LINE_LANES];
+    for lane in 0..LINE_LANES {
+        ux[lane] = cosine * RAY_COSINE[lane] - sine * RAY_SINE[lane];
+        uy[lane] = sine * RAY_COSINE[lane] + cosine * RAY_SINE[lane];
     }
     (ux, uy)
 }
@@ -44,32 +69,48 @@ pub fn crossing(ax: f32, ay: f32, bx: f32, by: f32, dx: f32, dy: f32, ux: f32, u
 
 /// Distance along each ray to the nearest segment, at most [`SONAR_LIMIT`].
 #[inline(always)]
-pub fn ranges(floor: &Floor, atlas: &[u32], x: f32, y: f32, ux: &Lanes, uy: &Lanes) -> Lanes {
-    let column = ((x * CELLS_PER_INCH) as u32).min(floor.plan.cell_columns - 1);
-    let row = ((y * CELLS_PER_INCH) as u32).min(floor.plan.cell_rows - 1);
-    let cell = floor.plan.cell_starts + row * floor.plan.cell_columns + column;
-    let first = atlas[cell as usize];
-    let end = atlas[cell as usize + 1];
-    let mut best_over = [SONAR_LIMIT; LANES];
-    let mut best_under = [1.0_f32; LANES];
-    for entry in first..end {
-        let segment = &floor.plan.segment[atlas[entry as usize] as usize];
-        let ax = segment.ax - x;
-        let ay = segment.ay - y;
-        let bx = segment.bx - x;
-        let by = segment.by - y;
-        let dx = segment.bx - segment.ax;
-        let dy = segment.by - segment.ay;
-        for lane in 0..LANES {
-            let (over, under) = crossing(ax, ay, bx, by, dx, dy, ux[lane], uy[lane]);
-            let hit = over >= 0.0 && over * best_under[lane] < best_over[lane] * under;
-            best_over[lane] = if hit { over } else { best_over[lane] };
-            best_under[lane] = if hit { under } else { best_under[lane] };
+pub fn ranges(floor: &Floor, x: f32, y: f32, ux: &Lines, uy: &Lines) -> Lanes {
+    let mut ahead = [INVERSE_LIMIT; LINE_LANES];
+    let mut behind = [-INVERSE_LIMIT; LINE_LANES];
+    let (blocks, mut left) = floor.audible(x, y);
+    for block in blocks {
+        let mut ax = [0.0; BLOCK];
+        let mut ay = [0.0; BLOCK];
+        let mut bx = [0.0; BLOCK];
+        let mut by = [0.0; BLOCK];
+        let mut px = [0.0; BLOCK];
+        let mut py = [0.0; BLOCK];
+        for lane in 0..BLOCK {
+            ax[lane] = block.ax[lane] - x;
+            ay[lane] = block.ay[lane] - y;
+            bx[lane] = block.bx[lane] - x;
+            by[lane] = block.by[lane] - y;
+            let dx = block.bx[lane] - block.ax[lane];
+            let dy = block.by[lane] - block.ay[lane];
+            let over = ax[lane] * dy - ay[lane] * dx;
+            let least = SLIVER * block.length[lane];
+            let held = if over.abs() > least { over.abs() } else { least };
+            let inverse = reciprocal(held);
+            let signed = if over < 0.0 { -inverse } else { inverse };
+            px[lane] = dy * signed;
+            py[lane] = dx * signed;
         }
+        for i in 0..left.min(BLOCK) {
+            for lane in 0..LINE_LANES {
+                let side_a = ax[i] * uy[lane] > ay[i] * ux[lane];
+                let side_b = bx[i] * uy[lane] > by[i] * ux[lane];
+                let closeness = ux[lane] * px[i] - uy[lane] * py[i];
+                let seen = if side_a != side_b { closeness } else { 0.0 };
+                ahead[lane] = if seen > ahead[lane] { seen } else { ahead[lane] };
+                behind[lane] = if seen < behind[lane] { seen } else { behind[lane] };
+            }
+        }
+        left = left.saturating_sub(BLOCK);
     }
     let mut range = [0.0; LANES];
-    for lane in 0..LANES {
-        range[lane] = best_over[lane] * reciprocal(best_under[lane]);
+    for line in 0..LINES {
+        range[line] = reciprocal(ahead[line]);
+        range[LINES + line] = reciprocal(-behind[line]);
     }
     range
 }
@@ -80,5 +121,6 @@ pub fn reading(range: f32, error: f32) -> u32 {
     let noisy = range * error;
     let low = if noisy > 0.0 { noisy } else { 0.0 };
     let bounded = if low < SONAR_LIMIT { low } else { SONAR_LIMIT };
-    (bounded + 0.5) as u32
+    // Beyond 2^23 f32 holds whole numbers only: the sum is rounded to one, which its lowest bits then are.
+    (bounded + 8_388_608.0).to_bits() & 0x7f
 }

@@ -7,16 +7,19 @@ use crate::learner::layout::{LANES, Noise, RAYS};
 use crate::learner::memory::{Scratch, Shared};
 use crate::math::functions::{sin_cos, wrap_degrees};
 use crate::math::lanes::lanes_or;
-use crate::math::rng::{Dice, noise};
-use crate::robot::light::{brightness, in_sight};
+use crate::math::rng::{Dice, bearing_words, coarse_noise, draws, noise};
+use crate::robot::light::{brightness, falloff, in_sight};
 use crate::robot::sonar::{ranges, rays, reading};
+use std::hint::black_box;
 
-/// Lane whose dice slip the actuators.
-pub const DICE_ACTUATOR: usize = 24;
-/// Lane whose dice turn the compass.
-pub const DICE_COMPASS: usize = 25;
-/// Lane whose dice choose a child.
-pub const DICE_CHOICE: usize = 26;
+/// Dice that slip the actuators.
+pub const DICE_ACTUATOR: usize = 6;
+/// Dice that turn the compass.
+pub const DICE_COMPASS: usize = 7;
+/// First of the dice that choose a child.
+pub const DICE_CHOICE: usize = 8;
+/// First of the dice of the light's bearings.
+pub const DICE_LIGHT: u32 = 16;
 
 /// Senses at a pose and writes the first eight words of the record.
 #[inline(always)]
@@ -33,28 +36,38 @@ pub fn observe(
 ) {
     let (sine, cosine) = sin_cos(heading);
     let (ux, uy) = rays(cosine, sine);
-    let range = ranges(&shared.floor, &shared.atlas, x, y, &ux, &uy);
+    let range = ranges(&shared.floor, x, y, &ux, &uy);
+    let words = bearing_words(&dice.x, &dice.y, &dice.z, &dice.w);
     let mut readings = [0_u32; LANES];
     for lane in 0..LANES {
-        let error = terms.sonar * noise(terms.kind, dice.x[lane], dice.y[lane]) + 1.0;
+        let error = terms.sonar * coarse_noise(terms.kind, words[lane]) + 1.0;
         readings[lane] = reading(range[lane], error);
     }
     let mut lit = 0;
     if shared.floor.plan.lit == 1 {
-        let seen = in_sight(&shared.floor, x, y);
-        let bright = brightness(&shared.floor, x, y, &ux, &uy);
-        let mut bits = [0_u32; LANES];
-        for lane in 0..LANES {
-            let glow = bright[lane] * (terms.light * noise(terms.kind, dice.z[lane], dice.w[lane]) + 1.0);
-            bits[lane] = if seen && glow > 1.0 && lane < RAYS { 1 << lane } else { 0 };
+        let most = falloff(&shared.floor, x, y);
+        // No noise reaches 3.5.
+        if most * (terms.light * 3.5 + 1.0) > 1.0 && in_sight(&shared.floor, x, y) {
+            let bright = brightness(&shared.floor, most, x, y, &ux, &uy);
+            // Behind `black_box` the compiler does not keep the keys of `roll` in memory on every step for this one.
+            let drawn = draws(black_box(dice.stream), DICE_LIGHT);
+            let words = bearing_words(&drawn[0], &drawn[1], &drawn[2], &drawn[3]);
+            let mut bits = [0_u32; LANES];
+            for lane in 0..LANES {
+                let glow = bright[lane] * (terms.light * coarse_noise(terms.kind, words[lane]) + 1.0);
+                bits[lane] = if glow > 1.0 && lane < RAYS { 1 << lane } else { 0 };
+            }
+            lit = lanes_or(&bits);
         }
-        lit = lanes_or(&bits);
     }
+    let readings = readings.map(|reading| reading as u8);
     for word in 0..6 {
-        scratch.record[word] = readings[word * 4]
-            | readings[word * 4 + 1] << 8
-            | readings[word * 4 + 2] << 16
-            | readings[word * 4 + 3] << 24;
+        scratch.record[word] = u32::from_le_bytes([
+            readings[word * 4],
+            readings[word * 4 + 1],
+            readings[word * 4 + 2],
+            readings[word * 4 + 3],
+        ]);
     }
     scratch.record[6] = lit | bumpers << 24;
     let error = noise(terms.kind, dice.x[DICE_COMPASS], dice.y[DICE_COMPASS]);

@@ -389,7 +389,7 @@ fn pays_beside(skill: &Skill) -> bool {
 fn look(shared: &Shared, x: f32, y: f32, heading: f32) -> [u32; RECORD_WORDS] {
     let (sine, cosine) = sin_cos(heading);
     let (ux, uy) = rays(cosine, sine);
-    let range = ranges(&shared.floor, &shared.atlas, x, y, &ux, &uy);
+    let range = ranges(&shared.floor, x, y, &ux, &uy);
     let mut record = [0; RECORD_WORDS];
     for ray in 0..RAYS {
         record[ray / 4] |= reading(range[ray], 1.0) << (8 * (ray % 4));

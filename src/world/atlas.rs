@@ -1,15 +1,18 @@
 //! From a floor plan to the words that the kernels read: the [`WorldPlan`] and the read-only atlas.
 
 use super::geometry::{distance, touch};
+use super::solids::sides;
 use super::{Door, ROBOT_RADIUS, Segment, World};
 use crate::learner::layout::{self, Area, WorldPlan};
 use bytemuck::Zeroable;
-use glam::DVec2;
+use glam::{DVec2, Vec2};
 
 /// Side in inches of the cells that have their own list of segments.
 pub const LIST_CELL: f64 = 12.0;
 /// Segments farther than this from every point of a cell are not in its list: the sonar's range and a margin.
 pub const LIST_REACH: f64 = 127.5;
+/// What is hidden is so by more than this, inches: far more than rounding can move anything by.
+const CLEAR: f64 = 0.1;
 /// A door is passed when the robot's centre is farther than this beyond the wall's far face. Ours.
 pub const PASSED: f64 = 13.0;
 
@@ -19,7 +22,8 @@ pub struct Atlas {
     /// The floor plan.
     pub plan: WorldPlan,
     /// `words[plan.cell_starts + cell]` to the next one bound a run of ascending segment indices in these same
-    /// words: all segments that a robot centred in the cell can touch or hear. Cells go row by row from the bottom.
+    /// words: all segments that a robot centred in the cell can hear. Cells go row by row from the bottom.
+    /// `plan.sight_starts` does the same for the segments that decide whether it sees the light.
     pub words: Vec<u32>,
 }
 
@@ -29,18 +33,15 @@ impl Atlas {
         let columns = (f64::from(world.size.x) / LIST_CELL).ceil() as u32;
         let rows = (f64::from(world.size.y) / LIST_CELL).ceil() as u32;
         let mut plan = plan(world);
-        (plan.cell_columns, plan.cell_rows, plan.cell_starts) = (columns, rows, 0);
-
-        let starts = (columns * rows) as usize + 1;
-        let mut words = vec![0; starts];
-        for cell in 0..columns * rows {
-            let corner = DVec2::new(f64::from(cell % columns), f64::from(cell / columns)) * LIST_CELL;
-            words[cell as usize] = words.len() as u32;
-            let near = |(_, segment): &(u32, &Segment)| square_distance(corner, segment) <= LIST_REACH;
-            let numbered = (0..).zip(&world.segments);
-            words.extend(numbered.filter(near).map(|(i, _)| i));
-        }
-        words[starts - 1] = words.len() as u32;
+        (plan.cell_columns, plan.cell_rows) = (columns, rows);
+        let mut words = Vec::new();
+        let cells: Vec<DVec2> = (0..columns * rows)
+            .map(|cell| DVec2::new(f64::from(cell % columns), f64::from(cell / columns)) * LIST_CELL)
+            .collect();
+        let heard = |corner: DVec2| indices(world, |segment| can_be_heard(world, corner, segment));
+        plan.cell_starts = add_lists(&mut words, cells.iter().map(|&corner| heard(corner)));
+        let hiding = |corner: DVec2| world.light.map_or_else(Vec::new, |light| hiding(world, corner, light.at));
+        plan.sight_starts = add_lists(&mut words, cells.iter().map(|&corner| hiding(corner)));
         Self { plan, words }
     }
 
@@ -57,6 +58,56 @@ impl Atlas {
         self.words.extend(table.iter().map(|value| value.to_bits()));
         offset
     }
+}
+
+/// Appends lists, one after another, behind the words at which they start; returns where those stand.
+fn add_lists(words: &mut Vec<u32>, lists: impl ExactSizeIterator<Item = Vec<u32>>) -> u32 {
+    let starts = words.len();
+    words.resize(starts + lists.len() + 1, 0);
+    for (number, list) in lists.enumerate() {
+        words[starts + number] = words.len() as u32;
+        words.extend(list);
+        words[starts + number + 1] = words.len() as u32;
+    }
+    starts as u32
+}
+
+fn indices(world: &World, wanted: impl Fn(&Segment) -> bool) -> Vec<u32> {
+    (0..).zip(&world.segments).filter(|(_, segment)| wanted(segment)).map(|(i, _)| i).collect()
+}
+
+/// Whether a segment can be the nearest on some ray out of the cell with this left bottom corner.
+fn can_be_heard(world: &World, corner: DVec2, segment: &Segment) -> bool {
+    square_distance(corner, segment) <= LIST_REACH
+        && !turned_away(world, corner, segment)
+        && !world.segments.iter().any(|other| covers(other, corner, segment))
+}
+
+/// All segments that can stand between a robot in the cell and the light, or one that always does.
+fn hiding(world: &World, corner: DVec2, light: Vec2) -> Vec<u32> {
+    let spot = Segment { a: light, b: light, charger: false };
+    let mut between = indices(world, |segment| !segment.charger && stands_between(segment, corner, light.as_dvec2()));
+    if let Some(cover) = between.iter().position(|i| covers(&world.segments[*i as usize], corner, &spot)) {
+        between = vec![between[cover]];
+    }
+    between
+}
+
+/// Whether a segment comes near any straight line from the cell to the light: whether no axis separates the two.
+fn stands_between(segment: &Segment, corner: DVec2, light: DVec2) -> bool {
+    let ends = [segment.a.as_dvec2(), segment.b.as_dvec2()];
+    let [c0, c1, c2, c3] = corners(corner);
+    let hull = [c0, c1, c2, c3, light];
+    let tangents = [c0, c1, c2, c3].map(|c| (light - c).perp());
+    let axes = tangents.into_iter().chain([(ends[1] - ends[0]).perp(), DVec2::X, DVec2::Y]);
+    let span = |points: &[DVec2], axis: DVec2| {
+        let along = points.iter().map(|p| p.dot(axis));
+        along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)))
+    };
+    axes.filter_map(DVec2::try_normalize).all(|axis| {
+        let (one, two) = (span(&ends, axis), span(&hull, axis));
+        one.0 <= two.1 + CLEAR && two.0 <= one.1 + CLEAR
+    })
 }
 
 fn plan(world: &World) -> WorldPlan {
@@ -109,11 +160,45 @@ fn doorway(door: &Door) -> Area {
     Area { x0: low.x as f32, y0: low.y as f32, x1: high.x as f32, y1: high.y as f32 }
 }
 
+/// Corners of the list cell with this left bottom corner.
+fn corners(corner: DVec2) -> [DVec2; 4] {
+    let far = corner + LIST_CELL;
+    [corner, DVec2::new(far.x, corner.y), far, DVec2::new(corner.x, far.y)]
+}
+
+/// Whether a segment is the side of a box and the whole cell lies behind it. A ray out of the cell has then come
+/// through another side of the box before.
+fn turned_away(world: &World, corner: DVec2, segment: &Segment) -> bool {
+    let (a, b) = (segment.a.as_dvec2(), segment.b.as_dvec2());
+    let solids = world.boxes.iter().chain(world.charger.iter().map(|charger| &charger.area));
+    let solid_on_the_left = solids.flat_map(sides).any(|side| side == (segment.a, segment.b));
+    solid_on_the_left && corners(corner).iter().all(|&p| (b - a).perp_dot(p - a) >= 0.0)
+}
+
+/// Whether every straight line from the cell to `segment` crosses `cover`, clear of its ends.
+///
+/// Cell and segment are convex: it is enough that the lines between their corners do.
+fn covers(cover: &Segment, corner: DVec2, segment: &Segment) -> bool {
+    let (a, b) = (cover.a.as_dvec2(), cover.b.as_dvec2());
+    let length = a.distance(b);
+    let along = (b - a) / length;
+    let side = |p: DVec2| along.perp_dot(p - a);
+    let ends = [segment.a.as_dvec2(), segment.b.as_dvec2()];
+    corners(corner).iter().all(|&from| {
+        ends.iter().all(|&to| {
+            let (near, far) = (side(from), side(to));
+            let apart = near.abs() > CLEAR && far.abs() > CLEAR && near * far < 0.0;
+            let at = along.dot(from - a + (to - from) * (near / (near - far)));
+            apart && at > CLEAR && at < length - CLEAR
+        })
+    })
+}
+
 /// Distance from a segment to the list cell with this left bottom corner.
 fn square_distance(corner: DVec2, segment: &Segment) -> f64 {
     let (a, b) = (segment.a.as_dvec2(), segment.b.as_dvec2());
     let far = corner + LIST_CELL;
-    let corners = [corner, DVec2::new(far.x, corner.y), far, DVec2::new(corner.x, far.y)];
+    let corners = corners(corner);
     let inside = |p: DVec2| p.cmpge(corner).all() && p.cmple(far).all();
     let enters = inside(a) || (0..4).any(|i| touch(a, b, corners[i], corners[(i + 1) % 4]));
     if enters {

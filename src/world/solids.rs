@@ -24,7 +24,7 @@ pub(super) fn holds(rect: &Rect, point: Vec2) -> bool {
 }
 
 /// The sides of a rectangle, counter-clockwise: its inside is on their left.
-fn sides(rect: &Rect) -> [(Vec2, Vec2); 4] {
+pub(super) fn sides(rect: &Rect) -> [(Vec2, Vec2); 4] {
     let corner = [rect.min, Vec2::new(rect.max.x, rect.min.y), rect.max, Vec2::new(rect.min.x, rect.max.y)];
     [0, 1, 2, 3].map(|i| (corner[i], corner[(i + 1) % 4]))
 }

@@ -88,7 +88,7 @@ impl Bench {
         let plan = plan_with(text, set);
         let shape = Shape::new(plan.world(), &[&plan.arms[0]]).expect("the skills fit");
         let (settings, cursor, nets) = shape.learner(&plan.arms[0], plan.run_seed, 0);
-        let floor = Floor::new(&shape.atlas.plan);
+        let floor = Floor::new(&shape.atlas.plan, &shape.atlas.words);
         let lessons = vec![0; shape.lessons_stride];
         let shared = Shared { floor, skills: shape.skills, atlas: shape.atlas.words, bank: vec![0] };
         Self { plan, shared, settings, cursor, nets, lessons }

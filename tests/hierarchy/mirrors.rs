@@ -118,7 +118,12 @@ fn mirrored(plan: &Written) -> Written {
 
 fn shared_in(bench: &Bench, world: &World) -> Shared {
     let shape = Shape::new(world, &[&bench.plan.arms[0]]).expect("the skills fit");
-    Shared { floor: Floor::new(&shape.atlas.plan), skills: shape.skills, atlas: shape.atlas.words, bank: vec![0] }
+    Shared {
+        floor: Floor::new(&shape.atlas.plan, &shape.atlas.words),
+        skills: shape.skills,
+        atlas: shape.atlas.words,
+        bank: vec![0],
+    }
 }
 
 #[test]

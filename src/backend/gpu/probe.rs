@@ -145,8 +145,8 @@ fn dot_of(u: [f32; 3], v: [f32; 3]) -> f32 {
 }
 
 fn lanes(answers: &mut [Answer; LANES], x: &[f32; LANES], words: &[u32; LANES]) {
-    let least = lanes_min(&std::array::from_fn(|lane| x[lane].abs()));
-    let bits = lanes_or(&std::array::from_fn(|lane| words[lane] & (1 << lane)));
+    let least = lanes_min(&std::array::from_fn::<_, LANES, _>(|lane| x[lane].abs()));
+    let bits = lanes_or(&std::array::from_fn::<_, LANES, _>(|lane| words[lane] & (1 << lane)));
     let mut partials: Partials = [[0.0; LANES]; MAX_CHILDREN];
     partials[0] = *x;
     partials[1] = x.map(|x| x * x);
