@@ -27,11 +27,16 @@ fn stopped() -> bool {
     return beyond || reached || cursor.phase >= PHASE_DONE;
 }
 
+fn conclude(lane: u32, base: u32) {
+    // What the last update spoiled is replayed too late: tests come first, and the next skill builds on it.
+    cursor.phase = select(PHASE_FAILED, PHASE_START, sound_weights(lane, base));
+}
+
 fn teach(lane: u32, s: u32, base: u32) {
     let begun = cursor.replay;
     let finished = cursor.replay_left == 0u && cursor.replay_open == 0u;
     if finished && begun >= settings[s].taught_passes * settings[s].lessons {
-        cursor.phase = PHASE_START;
+        conclude(lane, base);
     } else {
         if finished {
             let number = begun % settings[s].lessons;
@@ -115,7 +120,7 @@ fn replay(lane: u32, s: u32, base: u32) {
     let finished = cursor.replay_left == 0u && cursor.replay_open == 0u;
     if finished && begun >= taught + settings[s].replays {
         cursor.trial += 1u;
-        cursor.phase = PHASE_START;
+        conclude(lane, base);
     } else {
         if finished {
             let key = vec2<u32>(settings[s].run_seed, settings[s].learner_seed);

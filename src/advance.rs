@@ -6,9 +6,9 @@
 
 use crate::learner::layout::Dispatch;
 use crate::learner::memory::{Learner, Scratch};
-use crate::learner::phase::{PHASE_ACT, PHASE_DONE, PHASE_REPLAY, PHASE_START, PHASE_TEACH};
+use crate::learner::phase::{PHASE_ACT, PHASE_DONE, PHASE_FAILED, PHASE_REPLAY, PHASE_START, PHASE_TEACH};
 use crate::lesson::record::{CUT, ENDED, note, write_header, write_outcome, write_record, write_row};
-use crate::lesson::replay::{begin_replay, lesson_word, recent_lesson, replay_step, taught_lesson};
+use crate::lesson::replay::{begin_replay, lesson_word, recent_lesson, replay_step, sound_weights, taught_lesson};
 use crate::math::rng::{Purpose, Stream, below, draw, roll};
 use crate::skill::act::{descend, execute, place, sense, think, watch};
 use crate::skill::choose::{NO_CHILD, choose, sharpness};
@@ -26,6 +26,13 @@ fn stopped(learner: &Learner<'_>, dispatch: &Dispatch) -> bool {
     beyond || reached || cursor.phase >= PHASE_DONE
 }
 
+/// Waits for the next trial, unless a weight is spoiled.
+#[inline(always)]
+fn conclude(learner: &mut Learner<'_>, base: u32) {
+    // What the last update spoiled is replayed too late: tests come first, and the next skill builds on it.
+    learner.cursor.phase = if sound_weights(learner, base) { PHASE_START } else { PHASE_FAILED };
+}
+
 /// Learns from the taught lessons, pass after pass, and lists them as trials.
 #[inline(always)]
 fn teach(learner: &mut Learner<'_>, scratch: &mut Scratch, base: u32) {
@@ -33,7 +40,7 @@ fn teach(learner: &mut Learner<'_>, scratch: &mut Scratch, base: u32) {
     let begun = learner.cursor.replay;
     let finished = learner.cursor.replay_left == 0 && learner.cursor.replay_open == 0;
     if finished && begun >= settings.taught_passes * settings.lessons {
-        learner.cursor.phase = PHASE_START;
+        conclude(learner, base);
     } else {
         if finished {
             let number = begun % settings.lessons;
@@ -141,7 +148,7 @@ fn replay(learner: &mut Learner<'_>, scratch: &mut Scratch, base: u32) {
     let finished = learner.cursor.replay_left == 0 && learner.cursor.replay_open == 0;
     if finished && begun >= taught + settings.replays {
         learner.cursor.trial += 1;
-        learner.cursor.phase = PHASE_START;
+        conclude(learner, base);
     } else {
         if finished {
             let stream = Stream {

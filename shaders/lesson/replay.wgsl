@@ -82,15 +82,19 @@ fn inner_drawn(s: u32, step: u32) -> bool {
     return unit(draw(stream, step).x) < settings[s].inner_share;
 }
 
+fn aimed(s: u32, at: u32) -> f32 {
+    let reward = bitcast<f32>(lesson_word(at + 9u)) * settings[s].value_scale;
+    let future = (1.0f - settings[s].lambda) * cursor.next_best + settings[s].lambda * cursor.next_return;
+    return bounded(reward + settings[s].gamma * future, settings[s].target_limit);
+}
+
 fn replay_step(lane: u32, s: u32, base: u32) {
     let skill = cursor.skill;
     let open = cursor.replay_open == 1u;
     let step = select(cursor.replay_left - 1u, cursor.replay_left, open);
     let at = LESSON_HEADER + step * skills[skill].record_words;
     let marks = lesson_word(at + 8u);
-    let reward = bitcast<f32>(lesson_word(at + 9u)) * settings[s].value_scale;
-    let future = (1.0f - settings[s].lambda) * cursor.next_best + settings[s].lambda * cursor.next_return;
-    let aim = bounded(reward + settings[s].gamma * future, settings[s].target_limit);
+    let aim = aimed(s, at);
     let inner = settings[s].backup == BACKUP_DECISIONS && (marks >> 31u) == 0u && !open;
     if inner && !inner_drawn(s, step) {
         cursor.next_best = aim;
@@ -124,15 +128,30 @@ fn replay_step(lane: u32, s: u32, base: u32) {
                 sound = sound && is_number(q[other]);
             }
             if !sound {
+                // The place in the lesson stays: by it the transition is found.
                 cursor.phase = PHASE_FAILED;
-            } else if policy {
-                let pace = learning_rate(s, cursor.trial);
-                backward(lane, skill, s, base, child, delta, pace);
-                cursor.updates += 1u;
+            } else {
+                if policy {
+                    let pace = learning_rate(s, cursor.trial);
+                    backward(lane, skill, s, base, child, delta, pace);
+                    cursor.updates += 1u;
+                }
+                cursor.next_best = select(outlook.best, aim, inner);
+                cursor.next_return = select(outlook.best, aim, policy || inner);
+                cursor.replay_left = step;
             }
-            cursor.next_best = select(outlook.best, aim, inner);
-            cursor.next_return = select(outlook.best, aim, policy || inner);
-            cursor.replay_left = step;
         }
     }
+}
+
+fn sound_weights(lane: u32, base: u32) -> bool {
+    let skill = cursor.skill;
+    var wild = 0u;
+    for (var number = 0u; number < skills[skill].nets; number++) {
+        let net = net_of(skill, base, number);
+        for (var row = 0u; row < skills[skill].rows; row++) {
+            wild |= u32(!is_number(nets[net + row * LANES + lane]));
+        }
+    }
+    return lanes_or(lane, wild) == 0u;
 }

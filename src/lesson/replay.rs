@@ -7,14 +7,15 @@
 //! A skill over skills may learn at its decisions only: between them rewards are summed with their discount, and
 //! lambda mixes at decisions.
 
-use crate::learner::layout::{LESSON_HEADER, SkillPlan};
+use crate::learner::layout::{LANES, LESSON_HEADER, SkillPlan};
 use crate::learner::memory::{Learner, Scratch};
 use crate::learner::phase::PHASE_FAILED;
 use crate::lesson::record::CUT;
 use crate::math::functions::{exponential, is_number, ln};
+use crate::math::lanes::lanes_or;
 use crate::math::rng::{Purpose, Stream, below, draw, unit};
 use crate::qnet::backward::{backward, learning_rate};
-use crate::qnet::forward::forward;
+use crate::qnet::forward::{forward, net_of};
 use crate::skill::choose::{sharpness, weigh};
 use crate::skill::encode::encode;
 
@@ -126,6 +127,15 @@ pub fn inner_drawn(learner: &Learner<'_>, step: u32) -> bool {
     unit(draw(stream, step)[0]) < settings.inner_share
 }
 
+/// What the Q-value of the step at word `at` of the lesson in replay should be, given what follows it.
+#[inline(always)]
+pub fn aimed(learner: &Learner<'_>, at: u32) -> f32 {
+    let settings = &learner.settings[learner.cursor.skill as usize];
+    let reward = f32::from_bits(lesson_word(learner, at + 9)) * settings.value_scale;
+    let future = (1.0 - settings.lambda) * learner.cursor.next_best + settings.lambda * learner.cursor.next_return;
+    bounded(reward + settings.gamma * future, settings.target_limit)
+}
+
 /// Learns from the next step of the lesson in replay, last step first.
 #[inline(always)]
 pub fn replay_step(learner: &mut Learner<'_>, scratch: &mut Scratch, base: u32) {
@@ -135,9 +145,7 @@ pub fn replay_step(learner: &mut Learner<'_>, scratch: &mut Scratch, base: u32) 
     let step = if open { learner.cursor.replay_left } else { learner.cursor.replay_left - 1 };
     let at = LESSON_HEADER as u32 + step * skill.record_words;
     let marks = lesson_word(learner, at + 8);
-    let reward = f32::from_bits(lesson_word(learner, at + 9)) * settings.value_scale;
-    let future = (1.0 - settings.lambda) * learner.cursor.next_best + settings.lambda * learner.cursor.next_return;
-    let aim = bounded(reward + settings.gamma * future, settings.target_limit);
+    let aim = aimed(learner, at);
     let inner = settings.backup == BACKUP_DECISIONS && (marks >> 31) == 0 && !open;
     if inner && !inner_drawn(learner, step) {
         learner.cursor.next_best = aim;
@@ -171,15 +179,34 @@ pub fn replay_step(learner: &mut Learner<'_>, scratch: &mut Scratch, base: u32) 
                 sound = sound && is_number(scratch.q[other]);
             }
             if !sound {
+                // The place in the lesson stays: by it the transition is found.
                 learner.cursor.phase = PHASE_FAILED;
-            } else if policy {
-                let pace = learning_rate(settings, learner.cursor.trial);
-                backward(learner.nets, scratch, skill, settings, base, child, delta, pace);
-                learner.cursor.updates += 1;
+            } else {
+                if policy {
+                    let pace = learning_rate(settings, learner.cursor.trial);
+                    backward(learner.nets, scratch, skill, settings, base, child, delta, pace);
+                    learner.cursor.updates += 1;
+                }
+                learner.cursor.next_best = if inner { aim } else { outlook.best };
+                learner.cursor.next_return = if policy || inner { aim } else { outlook.best };
+                learner.cursor.replay_left = step;
             }
-            learner.cursor.next_best = if inner { aim } else { outlook.best };
-            learner.cursor.next_return = if policy || inner { aim } else { outlook.best };
-            learner.cursor.replay_left = step;
         }
     }
+}
+
+/// Whether all weights of the skill in training are numbers.
+#[inline(always)]
+pub fn sound_weights(learner: &Learner<'_>, base: u32) -> bool {
+    let skill = &learner.shared.skills[learner.cursor.skill as usize];
+    let mut wild = [0; LANES];
+    for number in 0..skill.nets {
+        let net = net_of(skill, base, number) as usize;
+        for row in 0..skill.rows as usize {
+            for lane in 0..LANES {
+                wild[lane] |= u32::from(!is_number(learner.nets[net + row * LANES + lane]));
+            }
+        }
+    }
+    lanes_or(&wild) == 0
 }
