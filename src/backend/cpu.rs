@@ -11,9 +11,14 @@ use crate::learner::memory::{Learner, Shared};
 use crate::step::step;
 use bytemuck::Zeroable;
 use rayon::prelude::*;
+use std::ops::Range;
+use std::time::{Duration, Instant};
 
 /// Quanta of one learner between two looks at the clock: some 10 ms.
 const QUANTA: u32 = 16_384;
+
+/// Work of one call of [`Backend::advance`].
+const TURN: Duration = Duration::from_millis(500);
 
 /// Learners that train together: few, so that finished ones are committed early.
 const COHORT: usize = 32;
@@ -183,6 +188,7 @@ impl Backend for CpuBackend {
             ..Dispatch::zeroed()
         };
         let shared = &cohort.shared;
+        let begun = Instant::now();
         self.pool.install(|| {
             cohort
                 .cursors
@@ -192,6 +198,10 @@ impl Backend for CpuBackend {
                 .zip(cohort.lessons.par_chunks_mut(cohort.lessons_stride))
                 .zip(cohort.rows.par_chunks_mut(cohort.rows_stride))
                 .for_each(|((((cursor, settings), nets), lessons), rows)| {
+                    // The others' turn comes with the next call, when these have reached the stop.
+                    if begun.elapsed() >= TURN {
+                        return;
+                    }
                     let mut learner = Learner { shared, settings, cursor, nets, lessons, rows };
                     run_advance(instructions, &mut learner, &dispatch);
                 });
@@ -199,7 +209,11 @@ impl Backend for CpuBackend {
         Ok(&cohort.cursors)
     }
 
-    fn evaluate(&mut self, test: Test) -> Result<Vec<Episode>, BackendError> {
+    fn learners(&self) -> usize {
+        self.cohort.as_ref().map_or(0, |cohort| cohort.cursors.len())
+    }
+
+    fn evaluate_some(&mut self, test: Test, learners: Range<usize>) -> Result<Vec<Episode>, BackendError> {
         let cohort = self.loaded()?;
         let dispatch = Dispatch {
             quanta: u32::MAX,
@@ -210,20 +224,18 @@ impl Backend for CpuBackend {
             ..Dispatch::zeroed()
         };
         let count = test.episodes as usize;
-        let mut episodes = fresh(cohort.cursors.len() * count);
+        let mut episodes = fresh(learners.len() * count);
         self.pool.install(|| {
-            episodes
-                .par_chunks_mut(count.max(1))
-                .zip(cohort.settings.par_chunks(cohort.skills))
-                .zip(cohort.nets.par_chunks(cohort.nets_stride))
-                .for_each(|((episodes, settings), nets)| {
-                    for (number, episode) in episodes.iter_mut().enumerate() {
-                        debug_assert_eq!(episode.state, STATE_FRESH);
-                        let shared = &cohort.shared;
-                        run_evaluate(self.instructions, episode, shared, settings, nets, &dispatch, number as u32);
-                        debug_assert!(episode.state <= STATE_CUT);
-                    }
-                });
+            // Episode by episode: few learners keep all threads busy too.
+            episodes.par_iter_mut().enumerate().for_each(|(place, episode)| {
+                let (learner, number) = (learners.start + place / count, place % count);
+                let settings = &cohort.settings[learner * cohort.skills..][..cohort.skills];
+                let nets = &cohort.nets[learner * cohort.nets_stride..][..cohort.nets_stride];
+                debug_assert_eq!(episode.state, STATE_FRESH);
+                let shared = &cohort.shared;
+                run_evaluate(self.instructions, episode, shared, settings, nets, &dispatch, number as u32);
+                debug_assert!(episode.state <= STATE_CUT);
+            });
         });
         Ok(episodes)
     }

@@ -25,6 +25,7 @@ use governor::{Governor, Share, ceiling, quantum_turns, step_turns};
 use pipeline::Pipeline;
 use shards::{Common, Shard};
 use source::{ADVANCE, EVALUATE, Kernel, STEP};
+use std::ops::Range;
 use std::time::{Duration, Instant};
 use wgpu::BufferUsages;
 
@@ -263,45 +264,52 @@ impl Backend for GpuBackend {
         Ok(&cohort.cursors)
     }
 
-    fn evaluate(&mut self, test: Test) -> Result<Vec<Episode>, BackendError> {
+    fn learners(&self) -> usize {
+        self.loaded.as_ref().map_or(0, |loaded| loaded.cohort.cursors.len())
+    }
+
+    fn evaluate_some(&mut self, test: Test, wanted: Range<usize>) -> Result<Vec<Episode>, BackendError> {
         let loaded = self.loaded.as_ref().ok_or_else(nothing_loaded)?;
         let (pipeline, governor) = self.evaluate.ready(&self.device)?;
         let Loaded { cohort, common, shards, dispatch: uniform, .. } = loaded;
-        let mut episodes = fresh(cohort.cursors.len() * test.episodes as usize);
+        let mut episodes = fresh(wanted.len() * test.episodes as usize);
         if episodes.is_empty() {
             return Ok(episodes);
         }
         // One test trial of a learner is a workgroup; the dispatch has a row of them per learner.
         if test.episodes > governor::GROUPS {
             let message = format!("{} test trials at a time, {} are possible", test.episodes, governor::GROUPS);
-            return Err(BackendError::TooLarge { learners: cohort.cursors.len(), message });
+            return Err(BackendError::TooLarge { learners: wanted.len(), message });
         }
         let one = u64::from(test.episodes) * size_of::<Episode>() as u64;
         let room = (RESULTS / one).max(1) as usize;
         let results = self.device.buffer(
             EVALUATE.name,
-            one * room.min(cohort.cursors.len()) as u64,
+            one * room.min(wanted.len()) as u64,
             BufferUsages::STORAGE | BufferUsages::COPY_SRC,
         )?;
         for shard in shards {
+            let asked = wanted.start.max(shard.learners.start)..wanted.end.min(shard.learners.end);
+            if asked.is_empty() {
+                continue;
+            }
             let binding = pipeline.bind(
                 &self.device,
                 &[uniform, &common.world, &common.atlas, &common.skills, &shard.settings, &shard.nets, &results],
             );
-            let learners = shard.learners.len();
-            let mut first = 0;
-            while first < learners {
-                let share = governor.share((learners - first) as u32 * test.episodes);
+            let mut first = asked.start;
+            while first < asked.end {
+                let share = governor.share((asked.end - first) as u32 * test.episodes);
                 let count = (share.groups / test.episodes).max(1) as usize;
-                let count = count.min(room).min(learners - first);
-                let from = (shard.learners.start + first) * test.episodes as usize;
+                let count = count.min(room).min(asked.end - first);
+                let from = (first - wanted.start) * test.episodes as usize;
                 let part = &mut episodes[from..from + count * test.episodes as usize];
                 let dispatch = Dispatch {
-                    first: first as u32,
+                    first: (first - shard.learners.start) as u32,
                     episodes: test.episodes,
                     test_skill: test.skill,
                     test_number: test.number,
-                    ..of(cohort, learners as u32)
+                    ..of(cohort, shard.learners.len() as u32)
                 };
                 finish(&self.device, pipeline, governor, (&binding, uniform, &results), dispatch, part)?;
                 first += count;

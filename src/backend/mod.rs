@@ -12,6 +12,7 @@ use crate::evaluate::STATE_FRESH;
 use crate::learner::layout::{Cursor, Episode, Robot, Settings};
 use crate::learner::memory::Shared;
 use crate::learner::phase::{PHASE_DONE, PHASE_START};
+use std::ops::Range;
 
 /// All memory of the learners that train together.
 #[derive(Debug, Clone)]
@@ -103,11 +104,22 @@ pub trait Backend {
     /// Where the device fails.
     fn advance(&mut self, stop: Stop) -> Result<&[Cursor], BackendError>;
 
-    /// Runs a whole test: every learner's episodes, learner by learner.
+    /// Learners of the cohort, 0 where none is loaded.
+    fn learners(&self) -> usize;
+
+    /// Runs a test of some of the learners to its end: their episodes, learner by learner.
     ///
     /// # Errors
     /// Where the device fails.
-    fn evaluate(&mut self, test: Test) -> Result<Vec<Episode>, BackendError>;
+    fn evaluate_some(&mut self, test: Test, learners: Range<usize>) -> Result<Vec<Episode>, BackendError>;
+
+    /// Runs a test of all learners.
+    ///
+    /// # Errors
+    /// Where the device fails.
+    fn evaluate(&mut self, test: Test) -> Result<Vec<Episode>, BackendError> {
+        self.evaluate_some(test, 0..self.learners())
+    }
 
     /// The cohort's memory as it stands.
     ///

@@ -14,11 +14,12 @@ use skilltree::record::folder::WORLD;
 use skilltree::record::tables::{EVALUATIONS, TRIALS, read_evaluations, read_trials};
 use skilltree::record::{Provenance, RunFolder};
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::Path;
 use tempfile::TempDir;
 
 /// Arms of two families and of several shapes, and one that shares with nobody.
-const ARMS: &str = r#"
+pub(crate) const ARMS: &str = r#"
     [arm.plain]
     [arm.steps.skill.go-home]
     persistence = "training"
@@ -102,8 +103,12 @@ impl Backend for Frail {
         self.inner.advance(stop)
     }
 
-    fn evaluate(&mut self, test: Test) -> Result<Vec<Episode>, BackendError> {
-        self.inner.evaluate(test)
+    fn learners(&self) -> usize {
+        self.inner.learners()
+    }
+
+    fn evaluate_some(&mut self, test: Test, learners: Range<usize>) -> Result<Vec<Episode>, BackendError> {
+        self.inner.evaluate_some(test, learners)
     }
 
     fn memory(&mut self) -> Result<&Cohort, BackendError> {
@@ -123,13 +128,13 @@ fn attempt(plan: &Plan, groups: &[Group], dir: &Path, cohort: usize, lasts: usiz
     // Short stretches, so that there are many moments to fail at.
     let inner = CpuBackend::new(2, Some(700)).expect("threads");
     let mut backend = Frail { inner, left: lasts };
-    let options = Options { cohort: Some(cohort) };
+    let options = Options { cohort: Some(cohort), ..Options::default() };
     run(plan, groups, folder, &mut backend, options, Provenance::default(), &mut Nobody)?;
     Ok(backend.left)
 }
 
 /// Everything that the learners of one arm left: weights, and rows of both tables.
-fn left(dir: &Path, arm: &str) -> BTreeMap<String, Vec<u8>> {
+pub(crate) fn left(dir: &Path, arm: &str) -> BTreeMap<String, Vec<u8>> {
     let mut found = BTreeMap::new();
     for entry in std::fs::read_dir(dir.join("skills")).expect("weights") {
         let entry = entry.expect("a file");
@@ -159,7 +164,7 @@ fn left(dir: &Path, arm: &str) -> BTreeMap<String, Vec<u8>> {
     found
 }
 
-const NAMES: [&str; 7] = ["plain", "steps", "learned", "random", "shared-net", "other-dock", "leave"];
+pub(crate) const NAMES: [&str; 7] = ["plain", "steps", "learned", "random", "shared-net", "other-dock", "leave"];
 
 #[test]
 fn shared_stems_leave_what_each_arm_leaves_alone() {
