@@ -112,7 +112,7 @@ pub fn read_if_there(disk: &dyn Disk, path: &Path) -> Result<Option<Vec<u8>>, Re
 }
 
 /// The process number keeps two processes from writing the same temporary file.
-fn temporary_name(path: &Path) -> PathBuf {
+pub(super) fn temporary_name(path: &Path) -> PathBuf {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     folder_of(path).join(format!(".{name}.{}{TEMPORARY}", std::process::id()))
 }

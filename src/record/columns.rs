@@ -16,12 +16,13 @@ use parquet::schema::parser::parse_message_type;
 use parquet::schema::types::Type;
 use std::cell::Cell;
 use std::collections::HashMap;
+use std::io::{self, Write};
 use std::panic::{self, AssertUnwindSafe};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Once};
 
-/// Rows written together; bounds the memory that the copies of the columns take.
-pub(super) const ROWS_PER_GROUP: usize = 1 << 20;
+/// Rows written together; bounds the memory that rows and the copies of their columns take.
+pub(super) const ROWS_PER_GROUP: usize = 1 << 17;
 /// Key of the file metadata that holds [`FORMAT`].
 const FORMAT_KEY: &str = "skilltree.format";
 /// Rows decoded at a time.
@@ -54,27 +55,52 @@ impl Column {
     }
 }
 
-/// Bytes of a Parquet file: Snappy, dictionaries, no times, nothing that depends on the machine.
-pub(super) fn write(
-    name: &str,
-    schema: &str,
-    groups: impl Iterator<Item = Result<Vec<Column>, RecordError>>,
-) -> Result<Vec<u8>, RecordError> {
-    let failed = |error: ParquetError| RecordError::invalid(name, error.to_string());
-    let schema = Arc::new(parse_message_type(schema).map_err(failed)?);
-    let properties = WriterProperties::builder()
-        .set_compression(Compression::SNAPPY)
-        .set_created_by("skilltree version 1 (build 0)".into())
-        .set_key_value_metadata(Some(vec![KeyValue::new(FORMAT_KEY.into(), FORMAT.to_string())]))
-        .build();
-    let mut file = SerializedFileWriter::new(Vec::new(), schema, Arc::new(properties)).map_err(failed)?;
-    for group in groups {
-        write_group(&mut file, group?).map_err(failed)?;
-    }
-    file.into_inner().map_err(failed)
+/// A Parquet file in the making: Snappy, dictionaries, no times, nothing that depends on the machine.
+pub(super) struct Writer<Sink: Write + Send> {
+    path: PathBuf,
+    file: SerializedFileWriter<Sink>,
 }
 
-fn write_group(file: &mut SerializedFileWriter<Vec<u8>>, group: Vec<Column>) -> Result<(), ParquetError> {
+impl<Sink: Write + Send> Writer<Sink> {
+    /// `path` is only for messages.
+    pub(super) fn new(path: &Path, schema: &str, sink: Sink) -> Result<Self, RecordError> {
+        let failed = |error| unwritten(path, error);
+        let schema = Arc::new(parse_message_type(schema).map_err(failed)?);
+        let properties = WriterProperties::builder()
+            .set_compression(Compression::SNAPPY)
+            .set_created_by("skilltree version 1 (build 0)".into())
+            .set_key_value_metadata(Some(vec![KeyValue::new(FORMAT_KEY.into(), FORMAT.to_string())]))
+            .build();
+        let file = SerializedFileWriter::new(sink, schema, Arc::new(properties)).map_err(failed)?;
+        Ok(Self { path: path.into(), file })
+    }
+
+    /// Writes some rows, column by column.
+    pub(super) fn group(&mut self, columns: Vec<Column>) -> Result<(), RecordError> {
+        write_group(&mut self.file, columns).map_err(|error| unwritten(&self.path, error))
+    }
+
+    /// Ends the file and hands back where it was written to.
+    pub(super) fn finish(self) -> Result<Sink, RecordError> {
+        self.file.into_inner().map_err(|error| unwritten(&self.path, error))
+    }
+}
+
+/// The disk's own error, or else a bug of ours.
+fn unwritten(path: &Path, error: ParquetError) -> RecordError {
+    match error {
+        ParquetError::External(error) => match error.downcast::<io::Error>() {
+            Ok(source) => RecordError::NotCommitted { path: path.into(), source: *source },
+            Err(error) => RecordError::invalid(path.display().to_string(), error.to_string()),
+        },
+        error => RecordError::invalid(path.display().to_string(), error.to_string()),
+    }
+}
+
+fn write_group<Sink: Write + Send>(
+    file: &mut SerializedFileWriter<Sink>,
+    group: Vec<Column>,
+) -> Result<(), ParquetError> {
     let mut rows = file.next_row_group()?;
     for column in group {
         let Some(mut writer) = rows.next_column()? else {

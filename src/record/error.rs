@@ -83,12 +83,31 @@ pub enum RecordError {
     },
     /// The run was interrupted, or is still going on.
     #[error(
-        "{}: the run is not complete (no manifest.json)\nhint: give the same `skilltree run` command again to finish it",
-        path.display()
+        "{0}: the run is not complete: {finished} of {1} learners are finished and saved\nhint: `skilltree run \
+         {0}/config.toml --out {0}` goes on with it; there is no report of a part of a run",
+        path.display(), of.map_or_else(|| "its".to_owned(), |of| of.to_string())
     )]
     Unfinished {
         /// The folder.
         path: PathBuf,
+        /// Learners whose results are saved.
+        finished: u64,
+        /// Learners of the run, where some of them are saved.
+        of: Option<u64>,
+    },
+    /// What a run has saved so far comes from another program.
+    #[error(
+        "{}: written by {found}, and this is {known}\nhint: results of two programs are not mixed: go on with the \
+         program that began the run, or choose another --out",
+        path.display()
+    )]
+    OtherProgram {
+        /// The file.
+        path: PathBuf,
+        /// Program and plan that wrote it.
+        found: String,
+        /// This program and plan.
+        known: String,
     },
     /// The folder was written by a version with another layout.
     #[error("{}: format {found}, but this program reads format {known}\nhint: use the skilltree version that wrote it", path.display())]
@@ -126,6 +145,10 @@ pub(crate) const RERUN: &str = "copy the folder again, or move it away and repea
 impl RecordError {
     pub(crate) fn damaged(path: &Path, problem: impl Into<String>) -> Self {
         Self::Damaged { path: path.into(), problem: problem.into(), hint: RERUN }
+    }
+
+    pub(crate) fn not_committed(path: &Path) -> impl FnOnce(io::Error) -> Self {
+        move |source| Self::NotCommitted { path: path.into(), source }
     }
 
     pub(crate) fn unreadable(path: &Path) -> impl FnOnce(io::Error) -> Self {

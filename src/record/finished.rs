@@ -1,7 +1,7 @@
 //! A complete run folder, verified and read only.
 
 use super::disk::{Disk, FileSystem, Kind};
-use super::folder::{CONFIG, WORLD};
+use super::folder::{CONFIG, WORLD, tally};
 use super::manifest::FileDigest;
 use super::{Manifest, RecordError};
 use std::io;
@@ -109,7 +109,8 @@ impl FinishedRun {
 fn without_manifest(disk: &dyn Disk, dir: &Path) -> Result<RecordError, RecordError> {
     let config = dir.join(CONFIG);
     if disk.kind(&config).map_err(RecordError::unreadable(&config))?.is_some() {
-        return Ok(RecordError::Unfinished { path: dir.into() });
+        let (finished, of) = tally(disk, dir)?;
+        return Ok(RecordError::Unfinished { path: dir.into(), finished, of });
     }
     let found = match disk.kind(dir).map_err(RecordError::unreadable(dir))? {
         None => " (there is no such folder)".to_owned(),

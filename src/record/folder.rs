@@ -2,10 +2,12 @@
 
 use super::atomic::read_if_there;
 use super::disk::{Disk, FileSystem, Lock, TryLockError};
-use super::manifest::{FileDigest, is_plain};
+use super::finishing::Finishing;
+use super::frame::{self, Refusal};
+use super::manifest::is_plain;
 use super::{FORMAT, Manifest, Provenance, RecordError, atomic};
-use sha2::{Digest, Sha256};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -16,16 +18,14 @@ pub const WORLD: &str = "world.toml";
 const LOCK: &str = ".lock";
 const MARKER: &str = ".skilltree";
 const PARTS: &str = "parts";
-/// Starts every part: eight bytes, then the content's length (u64, little-endian), its SHA-256, and the content.
-const PART_MAGIC: &[u8; 8] = b"SKLPART1";
-const PART_HEADER: usize = 8 + 8 + 32;
+const CHECKPOINT: &str = "checkpoint";
 
 /// How far a run folder has come.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum State {
     /// Nothing computed yet.
     Fresh,
-    /// Some parts are committed: the run can be resumed.
+    /// Parts are committed, or learners in training are kept: the run can be resumed.
     Partial,
     /// The manifest is there: nothing is left to do.
     Complete,
@@ -38,6 +38,8 @@ pub struct RunFolder {
     dir: PathBuf,
     /// Names of the config and of the world files.
     given: Vec<String>,
+    /// This program and this plan, as parts name them.
+    maker: String,
     state: State,
     _lock: Lock,
 }
@@ -77,7 +79,7 @@ impl RunFolder {
             atomic::remove_leftovers(on, folder)?;
         }
         let complete = exists(on, &dir.join(Manifest::NAME))?;
-        let started = complete || !part_names(on, dir)?.is_empty();
+        let started = complete || exists(on, &dir.join(CHECKPOINT))? || !part_names(on, dir)?.is_empty();
         atomic_once(on, &dir.join(MARKER), format!("skilltree run folder, format {FORMAT}\n").as_bytes())?;
         for (name, text) in &given {
             let path = dir.join(name);
@@ -88,8 +90,9 @@ impl RunFolder {
                 None => write_below(on, &path, text.as_bytes())?,
             }
         }
+        let maker = frame::maker(&given);
         let given = given.iter().map(|(name, _)| (*name).to_owned()).collect();
-        let mut folder = Self { disk, dir: dir.into(), given, state: State::Fresh, _lock: lock };
+        let mut folder = Self { disk, dir: dir.into(), given, maker, state: State::Fresh, _lock: lock };
         if complete {
             super::FinishedRun::read_on(Arc::clone(&folder.disk), dir)?;
             folder.state = State::Complete;
@@ -129,12 +132,7 @@ impl RunFolder {
         }
         let parts = self.dir.join(PARTS);
         atomic::make_folder(&*self.disk, &parts)?;
-        let mut bytes = Vec::with_capacity(PART_HEADER + content.len());
-        bytes.extend_from_slice(PART_MAGIC);
-        bytes.extend_from_slice(&(content.len() as u64).to_le_bytes());
-        bytes.extend_from_slice(&Sha256::digest(content));
-        bytes.extend_from_slice(content);
-        atomic::write(&*self.disk, &path, &bytes)?;
+        frame::write(&self.disk, &path, &self.maker, &mut |file| file.write_all(content))?;
         self.state = State::Partial;
         Ok(())
     }
@@ -142,61 +140,102 @@ impl RunFolder {
     /// The content of a committed part, or none if there is no such part.
     ///
     /// # Errors
-    /// [`RecordError::Damaged`] if the part is cut, altered or not one of ours.
+    /// [`RecordError::Damaged`] if the part is cut, altered or not one of ours, [`RecordError::OtherProgram`] if another
+    /// program or another plan left it.
     pub fn read_part(&self, name: &str) -> Result<Option<Vec<u8>>, RecordError> {
-        let path = self.part_path(name)?;
-        let Some(mut bytes) = read_if_there(&*self.disk, &path)? else { return Ok(None) };
-        match part_problem(&bytes) {
-            Some(problem) => Err(RecordError::Damaged {
-                path,
-                problem: problem.into(),
-                hint: "remove this file and give the same command again: only this part is computed anew",
-            }),
-            None => Ok(Some(bytes.split_off(PART_HEADER))),
+        let hint = "remove this file and give the same command again: only this part is computed anew";
+        self.read_framed(self.part_path(name)?, hint)
+    }
+
+    /// Keeps what is needed to go on with the learners in training, in place of what was kept before; hands back its
+    /// length in bytes.
+    ///
+    /// # Errors
+    /// As [`atomic::write()`].
+    pub fn write_checkpoint(
+        &mut self,
+        content: &mut dyn FnMut(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<u64, RecordError> {
+        let bytes = frame::write(&self.disk, &self.dir.join(CHECKPOINT), &self.maker, content)?;
+        self.state = State::Partial;
+        Ok(bytes)
+    }
+
+    /// What was last kept of the learners in training, if anything.
+    ///
+    /// # Errors
+    /// [`RecordError::Damaged`] or [`RecordError::OtherProgram`] if it cannot be gone on from.
+    pub fn read_checkpoint(&self) -> Result<Option<Vec<u8>>, RecordError> {
+        self.read_framed(self.dir.join(CHECKPOINT), "the learners that it held are trained anew")
+    }
+
+    /// Removes the checkpoint: nobody is in training any more.
+    pub fn remove_checkpoint(&self) {
+        // Best effort: one that is left behind names learners that are finished, and is ignored.
+        let _ = self.disk.remove_file(&self.dir.join(CHECKPOINT));
+    }
+
+    /// Gives a checkpoint that cannot be used another name, and hands that back: what is not understood is not deleted.
+    ///
+    /// # Errors
+    /// [`RecordError::NotCommitted`], [`RecordError::Unreadable`].
+    pub fn set_checkpoint_aside(&self) -> Result<PathBuf, RecordError> {
+        let path = self.dir.join(CHECKPOINT);
+        let mut number = 1;
+        loop {
+            let aside = self.dir.join(format!("{CHECKPOINT}.unused-{number}"));
+            if !exists(&*self.disk, &aside)? {
+                self.disk.rename(&path, &aside).map_err(RecordError::not_committed(&path))?;
+                return Ok(aside);
+            }
+            number += 1;
         }
     }
 
-    /// Writes the results, each whole, then the manifest that makes the run complete, then removes the parts. The files
-    /// may come from a lazy iterator, so that they need not be in memory together. The lock is given back.
+    fn read_framed(&self, path: PathBuf, hint: &'static str) -> Result<Option<Vec<u8>>, RecordError> {
+        let Some(bytes) = read_if_there(&*self.disk, &path)? else { return Ok(None) };
+        match frame::open(bytes, &self.maker) {
+            Ok(content) => Ok(Some(content)),
+            Err(Refusal::Damaged(problem)) => Err(RecordError::Damaged { path, problem: problem.into(), hint }),
+            Err(Refusal::Other(found)) => Err(RecordError::OtherProgram { path, found, known: self.maker.clone() }),
+        }
+    }
+
+    /// Begins to write the results.
     ///
     /// # Errors
-    /// [`RecordError::Invalid`] for a path that leaves the folder, is taken or comes twice, or if the run is complete;
-    /// otherwise as [`atomic::write()`]. After an error the parts are still there, so that the run can be resumed.
+    /// [`RecordError::Invalid`] if the run is complete; [`RecordError::Unreadable`] if a file of the experiment cannot
+    /// be read back.
+    pub fn finishing(&self) -> Result<Finishing<'_>, RecordError> {
+        if self.state == State::Complete {
+            return Err(RecordError::invalid(Manifest::NAME, "the run is already complete"));
+        }
+        Finishing::new(self)
+    }
+
+    /// Writes the results, each whole, and the manifest, as [`Finishing`] does. The lock is given back.
+    ///
+    /// # Errors
+    /// Those of [`Finishing`].
     pub fn finish<Files>(self, files: Files, provenance: Provenance) -> Result<Manifest, RecordError>
     where
         Files: IntoIterator<Item = (String, Vec<u8>)>,
     {
-        if self.state == State::Complete {
-            return Err(RecordError::invalid(Manifest::NAME, "the run is already complete"));
-        }
-        let disk = &*self.disk;
-        let mut digests = BTreeMap::new();
-        for name in &self.given {
-            let path = self.dir.join(name);
-            let digest = FileDigest::of_file(disk, &path).map_err(RecordError::unreadable(&path))?;
-            digests.insert(name.clone(), digest);
-        }
-        let mut folders = BTreeSet::from([self.dir.clone()]);
+        let mut finishing = self.finishing()?;
         for (name, bytes) in files {
-            if !is_free(&name) || digests.contains_key(&name) {
-                return Err(RecordError::invalid(name, "not a free path inside the run folder"));
-            }
-            let path = self.dir.join(&name);
-            if let Some(folder) = path.parent().filter(|folder| !folders.contains(*folder)) {
-                atomic::make_folder(disk, folder)?;
-                atomic::remove_leftovers(disk, folder)?;
-                folders.insert(folder.into());
-            }
-            atomic::place(disk, &path, &bytes)?;
-            digests.insert(name, FileDigest::of(&bytes));
+            finishing.add(&name, &bytes)?;
         }
-        for folder in folders.iter().rev() {
-            atomic::sync_folder(disk, folder)?;
-        }
-        let manifest = Manifest { format: FORMAT, provenance, files: digests };
-        atomic::write(disk, &self.dir.join(Manifest::NAME), &manifest.to_bytes()?)?;
-        self.remove_parts();
-        Ok(manifest)
+        finishing.complete(provenance)
+    }
+
+    /// Names of the files that the run was made from.
+    pub(super) fn given(&self) -> &[String] {
+        &self.given
+    }
+
+    /// Where the folder's files are.
+    pub(super) fn disk(&self) -> &Arc<dyn Disk> {
+        &self.disk
     }
 
     fn part_path(&self, name: &str) -> Result<PathBuf, RecordError> {
@@ -208,11 +247,12 @@ impl RunFolder {
     }
 
     /// Best effort: parts of a complete run are only wasted space, and the next opening tries again.
-    fn remove_parts(&self) {
+    pub(super) fn remove_parts(&self) {
         for name in part_names(&*self.disk, &self.dir).unwrap_or_default() {
             let _ = self.disk.remove_file(&self.dir.join(PARTS).join(name));
         }
         let _ = self.disk.remove_folder(&self.dir.join(PARTS));
+        self.remove_checkpoint();
     }
 }
 
@@ -227,9 +267,24 @@ pub fn lock(disk: &dyn Disk, dir: &Path) -> Result<Lock, RecordError> {
     })
 }
 
+/// Learners whose results a folder's parts hold, and those of the whole run if there are parts, as their names say:
+/// `32-of-640_...`.
+///
+/// # Errors
+/// [`RecordError::Unreadable`] if the folder cannot be listed.
+pub fn tally(disk: &dyn Disk, dir: &Path) -> Result<(u64, Option<u64>), RecordError> {
+    let numbers = |name: &String| -> Option<(u64, u64)> {
+        let (finished, rest) = name.split_once("-of-")?;
+        Some((finished.parse().ok()?, rest.split('_').next()?.parse().ok()?))
+    };
+    let counts: Vec<(u64, u64)> = part_names(disk, dir)?.iter().filter_map(numbers).collect();
+    let finished = counts.iter().fold(0_u64, |sum, (finished, _)| sum.saturating_add(*finished));
+    Ok((finished, counts.first().map(|(_, of)| *of)))
+}
+
 /// Whether a file may have this path: one inside the folder that is not kept for ourselves.
-fn is_free(name: &str) -> bool {
-    is_plain(name) && name != Manifest::NAME && name.split('/').next() != Some(PARTS)
+pub(super) fn is_free(name: &str) -> bool {
+    is_plain(name) && ![Manifest::NAME, CHECKPOINT].contains(&name) && name.split('/').next() != Some(PARTS)
 }
 
 /// The files that a run is made from: each is free and comes once, and one of them is the config's own world.
@@ -288,15 +343,4 @@ fn atomic_once(disk: &dyn Disk, path: &Path, bytes: &[u8]) -> Result<(), RecordE
 
 fn part_names(disk: &dyn Disk, dir: &Path) -> Result<Vec<String>, RecordError> {
     Ok(atomic::list(disk, &dir.join(PARTS))?.into_iter().filter(|name| is_plain(name)).collect())
-}
-
-fn part_problem(bytes: &[u8]) -> Option<&'static str> {
-    let Some((header, content)) = bytes.split_at_checked(PART_HEADER) else { return Some("cut within its header") };
-    if &header[..8] != PART_MAGIC {
-        return Some("not a part of a skilltree run");
-    }
-    if header[8..16] != (content.len() as u64).to_le_bytes() {
-        return Some("its length is not the one that was written");
-    }
-    (header[16..] != Sha256::digest(content)[..]).then_some("its content is not what was written")
 }

@@ -1,8 +1,9 @@
 //! The two tables of sums, from which anybody can recompute every rate: `trials.parquet` and `evaluations.parquet`.
 
 use super::RecordError;
-use super::columns::{self, Column, Table};
+use super::columns::{self, Column, Table, Writer};
 use super::disk::{Disk, FileSystem};
+use std::io::Write;
 use std::path::Path;
 
 /// File name of the training trials.
@@ -105,53 +106,117 @@ const EVALUATION_SCHEMA: &str = "message evaluations {
     REQUIRED INT32 collisions (INTEGER(32,false));
 }";
 
-/// The bytes of `trials.parquet`: the same for the same rows, which the caller has sorted.
+/// A table that is written row by row, in bounded memory. The same rows give the same bytes; the caller has sorted them.
+pub struct TableWriter<'names, Row, Sink: Write + Send> {
+    names: &'names Names,
+    columns: fn(&[Row], &Names) -> Result<Vec<Column>, RecordError>,
+    rows: Vec<Row>,
+    file: Writer<Sink>,
+}
+
+impl<'names, Sink: Write + Send> TableWriter<'names, TrialRow, Sink> {
+    /// Begins `trials.parquet`; `path` is only for messages.
+    ///
+    /// # Errors
+    /// [`RecordError::NotCommitted`] if `sink` takes no more.
+    pub fn trials(path: &Path, names: &'names Names, sink: Sink) -> Result<Self, RecordError> {
+        let file = Writer::new(path, TRIAL_SCHEMA, sink)?;
+        Ok(Self { names, columns: trial_columns, rows: Vec::new(), file })
+    }
+}
+
+impl<'names, Sink: Write + Send> TableWriter<'names, EvaluationRow, Sink> {
+    /// Begins `evaluations.parquet`; `path` is only for messages.
+    ///
+    /// # Errors
+    /// [`RecordError::NotCommitted`] if `sink` takes no more.
+    pub fn evaluations(path: &Path, names: &'names Names, sink: Sink) -> Result<Self, RecordError> {
+        let file = Writer::new(path, EVALUATION_SCHEMA, sink)?;
+        Ok(Self { names, columns: evaluation_columns, rows: Vec::new(), file })
+    }
+}
+
+impl<Row, Sink: Write + Send> TableWriter<'_, Row, Sink> {
+    /// Adds a row.
+    ///
+    /// # Errors
+    /// [`RecordError::Invalid`] if a field of it has no name, [`RecordError::NotCommitted`] if the sink takes no more.
+    pub fn push(&mut self, row: Row) -> Result<(), RecordError> {
+        self.rows.push(row);
+        if self.rows.len() < columns::ROWS_PER_GROUP { Ok(()) } else { self.flush() }
+    }
+
+    /// Ends the table and hands back where it was written to.
+    ///
+    /// # Errors
+    /// As [`TableWriter::push`].
+    pub fn finish(mut self) -> Result<Sink, RecordError> {
+        if !self.rows.is_empty() {
+            self.flush()?;
+        }
+        self.file.finish()
+    }
+
+    fn flush(&mut self) -> Result<(), RecordError> {
+        self.file.group((self.columns)(&self.rows, self.names)?)?;
+        self.rows.clear();
+        Ok(())
+    }
+}
+
+fn trial_columns(rows: &[TrialRow], names: &Names) -> Result<Vec<Column>, RecordError> {
+    Ok(vec![
+        Column::text(rows.iter().map(|r| r.arm), &names.arms)?,
+        Column::count(rows.iter().map(|r| r.point)),
+        Column::count(rows.iter().map(|r| r.seed)),
+        Column::text(rows.iter().map(|r| r.skill), &names.skills)?,
+        Column::count(rows.iter().map(|r| r.trial)),
+        Column::count(rows.iter().map(|r| r.actions)),
+        Column::count(rows.iter().map(|r| r.steps)),
+        Column::Single(rows.iter().map(|r| r.reward).collect()),
+        Column::Flag(rows.iter().map(|r| r.success).collect()),
+        Column::count(rows.iter().map(|r| r.collisions)),
+        Column::Flag(rows.iter().map(|r| r.taught).collect()),
+    ])
+}
+
+fn evaluation_columns(rows: &[EvaluationRow], names: &Names) -> Result<Vec<Column>, RecordError> {
+    Ok(vec![
+        Column::text(rows.iter().map(|r| r.arm), &names.arms)?,
+        Column::count(rows.iter().map(|r| r.point)),
+        Column::count(rows.iter().map(|r| r.seed)),
+        Column::text(rows.iter().map(|r| r.skill), &names.skills)?,
+        Column::count(rows.iter().map(|r| r.trials)),
+        Column::count(rows.iter().map(|r| r.actions)),
+        Column::text(rows.iter().map(|r| r.variant), &names.variants)?,
+        Column::text(rows.iter().map(|r| r.room), &names.rooms)?,
+        Column::count(rows.iter().map(|r| r.episodes)),
+        Column::count(rows.iter().map(|r| r.successes)),
+        Column::count(rows.iter().map(|r| r.steps)),
+        Column::Double(rows.iter().map(|r| r.reward).collect()),
+        Column::Double(rows.iter().map(|r| r.returned).collect()),
+        Column::count(rows.iter().map(|r| r.collisions)),
+    ])
+}
+
+/// The bytes of a whole `trials.parquet`.
 ///
 /// # Errors
 /// [`RecordError::Invalid`] if a row's `arm` or `skill` has no name.
 pub fn write_trials(rows: &[TrialRow], names: &Names) -> Result<Vec<u8>, RecordError> {
-    let groups = rows.chunks(columns::ROWS_PER_GROUP).map(|rows| {
-        Ok(vec![
-            Column::text(rows.iter().map(|r| r.arm), &names.arms)?,
-            Column::count(rows.iter().map(|r| r.point)),
-            Column::count(rows.iter().map(|r| r.seed)),
-            Column::text(rows.iter().map(|r| r.skill), &names.skills)?,
-            Column::count(rows.iter().map(|r| r.trial)),
-            Column::count(rows.iter().map(|r| r.actions)),
-            Column::count(rows.iter().map(|r| r.steps)),
-            Column::Single(rows.iter().map(|r| r.reward).collect()),
-            Column::Flag(rows.iter().map(|r| r.success).collect()),
-            Column::count(rows.iter().map(|r| r.collisions)),
-            Column::Flag(rows.iter().map(|r| r.taught).collect()),
-        ])
-    });
-    columns::write(TRIALS, TRIAL_SCHEMA, groups)
+    let mut table = TableWriter::trials(Path::new(TRIALS), names, Vec::new())?;
+    rows.iter().try_for_each(|row| table.push(*row))?;
+    table.finish()
 }
 
-/// The bytes of `evaluations.parquet`: the same for the same rows, which the caller has sorted.
+/// The bytes of a whole `evaluations.parquet`.
 ///
 /// # Errors
-/// [`RecordError::Invalid`] if a row's `arm`, `skill` or `room` has no name.
+/// [`RecordError::Invalid`] if a row's `arm`, `skill`, `variant` or `room` has no name.
 pub fn write_evaluations(rows: &[EvaluationRow], names: &Names) -> Result<Vec<u8>, RecordError> {
-    let groups = rows.chunks(columns::ROWS_PER_GROUP).map(|rows| {
-        Ok(vec![
-            Column::text(rows.iter().map(|r| r.arm), &names.arms)?,
-            Column::count(rows.iter().map(|r| r.point)),
-            Column::count(rows.iter().map(|r| r.seed)),
-            Column::text(rows.iter().map(|r| r.skill), &names.skills)?,
-            Column::count(rows.iter().map(|r| r.trials)),
-            Column::count(rows.iter().map(|r| r.actions)),
-            Column::text(rows.iter().map(|r| r.variant), &names.variants)?,
-            Column::text(rows.iter().map(|r| r.room), &names.rooms)?,
-            Column::count(rows.iter().map(|r| r.episodes)),
-            Column::count(rows.iter().map(|r| r.successes)),
-            Column::count(rows.iter().map(|r| r.steps)),
-            Column::Double(rows.iter().map(|r| r.reward).collect()),
-            Column::Double(rows.iter().map(|r| r.returned).collect()),
-            Column::count(rows.iter().map(|r| r.collisions)),
-        ])
-    });
-    columns::write(EVALUATIONS, EVALUATION_SCHEMA, groups)
+    let mut table = TableWriter::evaluations(Path::new(EVALUATIONS), names, Vec::new())?;
+    rows.iter().try_for_each(|row| table.push(*row))?;
+    table.finish()
 }
 
 /// Reads a table of training trials. [`Names::rooms`] comes out empty.
