@@ -34,6 +34,17 @@
 //! number in the tables' column `point` ([`record::sweep`]). Nothing after the config stage knows more of it. Learners of
 //! several arms and points train in one cohort where their skills differ in numbers alone ([`experiment::cohorts`]).
 //!
+//! # Runs that are stopped
+//!
+//! Cohorts train one after another, and each is committed as *parts* before the next begins. In between, the learners'
+//! memory is saved in a *checkpoint* every minute and when a signal asks for it ([`experiment::checkpoint`]): as a
+//! learner's whole position is in its memory, going on is training as ever, without the tests that it has taken. Parts
+//! and checkpoints belong to one version of the program and one plan. At the end the tables and nets are written part
+//! by part ([`experiment::files`]), so that the memory taken does not grow with the number of learners.
+//!
+//! A learner in which a number stops being finite is frozen by the kernel. The host finds the transition from what the
+//! learner's memory holds ([`mod@experiment::failure`]), lists it in `failures.json`, and leaves it in every table.
+//!
 //! # Twins
 //!
 //! Every `shaders/PATH.wgsl` has its CPU twin at `src/PATH.rs`: same functions, same statements in the same

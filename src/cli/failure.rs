@@ -21,6 +21,9 @@ pub enum Failure {
     /// Standard output does not take the results.
     #[error("cannot write to standard output: {0}\nhint: free some space, or send the output elsewhere")]
     Output(std::io::Error),
+    /// The operating system does not hand signals over.
+    #[error("cannot listen for signals: {0}\nhint: this machine lets no program do so; run it elsewhere")]
+    Signals(std::io::Error),
     /// A config or world file, or a `--set`, is wrong.
     #[error(transparent)]
     Config(#[from] ConfigError),
@@ -43,6 +46,9 @@ pub enum Failure {
     /// A run folder cannot be read or written.
     #[error(transparent)]
     Record(#[from] RecordError),
+    /// A run was told to stop.
+    #[error("{0}")]
+    Stopped(String),
     /// A report cannot be made.
     #[error(transparent)]
     Report(#[from] ReportError),
@@ -53,8 +59,13 @@ impl Failure {
     pub fn code(&self) -> u8 {
         match self {
             Self::Usage { .. } | Self::Config(_) | Self::Setup(_) => 2,
-            Self::Backend(BackendError::Device { .. }) => 75,
-            Self::Output(_) | Self::Parity { .. } | Self::Backend(_) | Self::Record(_) | Self::Report(_) => 1,
+            Self::Backend(BackendError::Device { .. }) | Self::Stopped(_) => 75,
+            Self::Output(_)
+            | Self::Signals(_)
+            | Self::Parity { .. }
+            | Self::Backend(_)
+            | Self::Record(_)
+            | Self::Report(_) => 1,
         }
     }
 }
@@ -64,6 +75,7 @@ impl From<RunError> for Failure {
         match error {
             RunError::Record(error) => Self::Record(error),
             RunError::Backend(error) => Self::Backend(error),
+            RunError::Stopped { .. } => Self::Stopped(error.to_string()),
         }
     }
 }

@@ -10,6 +10,7 @@ mod probe;
 mod progress;
 mod report;
 mod run;
+mod signals;
 
 pub use failure::Failure;
 pub use output::tell;

@@ -1,9 +1,12 @@
 //! How a run shows where it is: a bar on a terminal, a line per cohort otherwise.
 
 use super::output::tell;
+use super::signals::Signals;
 use crate::experiment::run::Observer;
+use crate::record::{Failure, RecordError};
 use indicatif::{HumanCount, HumanDuration, ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
+use std::path::Path;
 
 /// The message comes last, most important first: a narrow terminal cuts it, and never wraps it.
 const TEMPLATE: &str = "{percent:>3} % [{bar:20}] {wide_msg}";
@@ -16,11 +19,14 @@ pub(super) struct RunProgress {
     trials: u64,
     /// Trials that were finished at the start.
     began: Option<u64>,
+    signals: Signals,
+    /// Whether the user knows that it is stopping.
+    stopping: bool,
 }
 
 impl RunProgress {
-    /// For a run of so many learners and so many trials in all.
-    pub(super) fn new(learners: usize, trials: u64) -> Self {
+    /// For a run of so many learners and so many trials in all, which these signals stop.
+    pub(super) fn new(learners: usize, trials: u64, signals: Signals) -> Self {
         let bar = std::io::stderr().is_terminal().then(|| {
             let bar = ProgressBar::new(trials);
             if let Ok(style) = ProgressStyle::with_template(TEMPLATE) {
@@ -28,13 +34,21 @@ impl RunProgress {
             }
             bar
         });
-        Self { bar, learners, trials, began: None }
+        Self { bar, learners, trials, began: None, signals, stopping: false }
     }
 
     /// Takes the bar away.
     pub(super) fn finish(&self) {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
+        }
+    }
+
+    /// Tells something beside the bar.
+    fn say(&self, text: &str) {
+        match &self.bar {
+            Some(bar) => bar.suspend(|| tell(text)),
+            None => tell(text),
         }
     }
 }
@@ -63,5 +77,27 @@ impl Observer for RunProgress {
         if self.bar.is_none() {
             tell(&format!("{finished} of {} learners trained, tested and saved", self.learners));
         }
+    }
+
+    fn failed(&mut self, failure: &Failure) {
+        let Failure { arm, point, seed, skill, trial, what, .. } = failure;
+        let point = if *point > 0 { format!(", point {point}") } else { String::new() };
+        self.say(&format!(
+            "warning: arm `{arm}`{point}, seed {seed}: {what}, in skill `{skill}` after {trial} trials: the learner is \
+             frozen there, and counts as a failure"
+        ));
+    }
+
+    fn set_aside(&mut self, why: &RecordError, now: &Path) {
+        self.say(&format!("warning: {why}\nnote: it is now {}", now.display()));
+    }
+
+    fn stop(&mut self) -> bool {
+        let asked = self.signals.asked();
+        if asked && !self.stopping {
+            self.stopping = true;
+            self.say("stopping: saving the learners in training; a second signal ends it at once");
+        }
+        asked
     }
 }

@@ -3,6 +3,7 @@
 use super::backend::BackendArguments;
 use super::output::{print, tell};
 use super::progress::RunProgress;
+use super::signals::Signals;
 use super::{Failure, exit_codes, plan};
 use crate::config::plan::Plan;
 use crate::config::{Overrides, load};
@@ -14,7 +15,7 @@ use crate::report;
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
-use std::time::{Instant, SystemTime};
+use std::time::{Duration, Instant, SystemTime};
 
 /// Trains, tests, records and reports an experiment. The same command again continues where an interrupted
 /// run stopped, or says that the run is complete.
@@ -27,8 +28,9 @@ use std::time::{Instant, SystemTime};
     "  skilltree run configs/docking.toml --set learning.rate=0.01 --out runs/fast\n",
     "  skilltree run configs/thresholds.toml --dry-run\n",
     "  skilltree run configs/sweep.toml --arm taught-adam --point 3 --seeds 1 --out runs/one\n\n",
-    "No choice of backend, threads, cohort or quanta changes a byte of the results. A run can be stopped at any time: ",
-    "the same command continues it after the last cohort that was saved.\n\n",
+    "No choice of backend, threads, cohort, quanta or checkpoints changes a byte of the results. A run can be stopped at ",
+    "any time: Ctrl-C and SIGTERM save everything first, and the same command goes on. After a crash it goes on from the ",
+    "last checkpoint.\n\n",
     exit_codes!()
 ))]
 pub(super) struct Arguments {
@@ -54,6 +56,10 @@ pub(super) struct Arguments {
     /// Only says what would be run, what it would take and how long; writes nothing.
     #[arg(long)]
     dry_run: bool,
+    /// Seconds between two checkpoints of the learners in training: what a crash may cost. Saving takes a tenth of the
+    /// time at most, so that they may be further apart.
+    #[arg(long, value_name = "SECONDS", default_value = "60", value_parser = seconds)]
+    checkpoint: Duration,
     /// The run folder; `runs/NAME` if not given, with the config's name.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -79,7 +85,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let mut backend = arguments.backend.open()?;
     let groups = groups(&plan)?;
-    let options = Options { cohort: arguments.cohort.map(|cohort| cohort as usize) };
+    let options =
+        Options { cohort: arguments.cohort.map(|cohort| cohort as usize), checkpoint: Some(arguments.checkpoint) };
     let forecast = plan::show(&plan, &groups, backend.as_mut(), options)?;
     tell(&format!("folder:   {}", out.display()));
     if arguments.dry_run {
@@ -95,7 +102,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let started = Instant::now();
     let trials = trials(&plan);
-    let mut progress = RunProgress::new(forecast.learners, trials);
+    let signals = Signals::listen().map_err(Failure::Signals)?;
+    let mut progress = RunProgress::new(forecast.learners, trials, signals);
     let provenance = Provenance {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         commit: option_env!("SKILLTREE_COMMIT").map(str::to_owned),
@@ -108,9 +116,20 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let outcome = run_experiment(&plan, &groups, run_folder, backend.as_mut(), options, provenance, &mut progress);
     progress.finish();
+    // From here on a signal ends the program: a report is soon made again.
+    drop(progress);
     outcome?;
     tell(&format!("trained and tested in {:.1} s", started.elapsed().as_secs_f64()));
     conclude(&out)
+}
+
+/// Seconds, such as `60` or `0.5`.
+fn seconds(text: &str) -> Result<Duration, String> {
+    let seconds: f64 = text.parse().map_err(|_| format!("`{text}` is no number of seconds, such as 60 or 0.5"))?;
+    match Duration::try_from_secs_f64(seconds) {
+        Ok(duration) if (0.01..=86_400.0).contains(&seconds) => Ok(duration),
+        _ => Err("from 0.01 to 86400 seconds are possible".to_owned()),
+    }
 }
 
 /// Whether nothing is there yet: no folder, or an empty one.

@@ -43,6 +43,24 @@ pub fn stages<E>(
     Ok(stages)
 }
 
+/// The cohorts that go on from the stems of some seeds and an arm that has them, without the learners that are `done`.
+///
+/// # Errors
+/// Those of `size`.
+pub fn branching<E>(
+    plan: &Plan,
+    groups: &[Group],
+    (arm, seeds): (usize, &[u32]),
+    size: impl FnOnce(usize) -> Result<usize, E>,
+    done: impl Fn(&LearnerId) -> bool,
+) -> Result<Vec<Vec<LearnerId>>, E> {
+    let Some(family) = families(plan).into_iter().find(|family| family.arms.contains(&arm)) else {
+        return Ok(Vec::new());
+    };
+    let most = size(family.bytes_per_learner(groups))?.max(1);
+    Ok(cohorts(plan, groups, &family, seeds, most, &done))
+}
+
 fn cohorts(
     plan: &Plan,
     groups: &[Group],

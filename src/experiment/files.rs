@@ -2,18 +2,22 @@
 
 use super::family::group_of;
 use super::group::{Group, LearnerId};
+use super::parts::Parts;
 use super::result::{LearnerResult, RoomSums};
+use super::run::{Observer, RunError};
+use super::senses;
 use super::train::unpack;
+use super::trajectories::trajectories;
+use crate::backend::Backend;
 use crate::config::plan::Plan;
 use crate::learner::layout::{LANES, ROW_WORDS};
 use crate::qnet::forward::net_of;
+use crate::record::failures::{self, write_failures};
 use crate::record::sweep::{self, write_sweep};
-use crate::record::tables::{
-    EVALUATIONS, EvaluationRow, Names, PLANNER, TRAINED, TRIALS, TrialRow, write_evaluations, write_trials,
-};
-use crate::record::trajectories::{self, Trajectory, write_trajectories};
+use crate::record::tables::{EVALUATIONS, EvaluationRow, Names, PLANNER, TRAINED, TRIALS, TableWriter, TrialRow};
+use crate::record::trajectories::{self, write_trajectories};
 use crate::record::weights::{NetWeights, SkillWeights, write_weights};
-use crate::record::{PlaceReading, RecordError, places};
+use crate::record::{Provenance, RecordError, RunFolder, places};
 use crate::world::World;
 use glam::Vec2;
 use std::collections::BTreeMap;
@@ -21,40 +25,93 @@ use std::collections::BTreeMap;
 /// Room of a test that starts in none.
 const NO_ROOM: &str = "none";
 
-/// All results of an experiment.
-#[derive(Debug)]
-pub struct Results<'a> {
-    /// What was run.
-    pub plan: &'a Plan,
-    /// Its arms by shape.
-    pub groups: &'a [Group],
-    /// By arm and seed.
-    pub learners: BTreeMap<LearnerId, LearnerResult>,
-    /// What the sensors read at the named places.
-    pub places: Vec<PlaceReading>,
-    /// Example trials.
-    pub trajectories: Vec<Trajectory>,
+/// A row without its key and its sums.
+const BLANK: EvaluationRow = EvaluationRow {
+    arm: 0,
+    point: 0,
+    seed: 0,
+    skill: 0,
+    trials: 0,
+    actions: 0,
+    variant: 0,
+    room: 0,
+    episodes: 0,
+    successes: 0,
+    steps: 0,
+    reward: 0.0,
+    returned: 0.0,
+    collisions: 0,
+};
+
+/// Writes the results of an experiment, all of whose learners are finished, and the manifest: one learner after
+/// another, so that the memory it takes does not grow with their number. What it did before it was stopped or killed
+/// does no harm: the parts stay until the manifest is there.
+///
+/// # Errors
+/// Where the folder or the device fails, or the observer stops it.
+pub fn finish(
+    plan: &Plan,
+    groups: &[Group],
+    folder: &RunFolder,
+    parts: &mut Parts,
+    backend: &mut dyn Backend,
+    observer: &mut dyn Observer,
+    provenance: impl FnOnce(usize) -> Provenance,
+) -> Result<(), RunError> {
+    let results = Results { plan, groups };
+    let names = results.names();
+    let arms = results.arm_indices();
+    let mut finishing = folder.finishing()?;
+    let file = finishing.begin(TRIALS)?;
+    let mut trials = TableWriter::trials(&folder.dir().join(TRIALS), &names, file)?;
+    let file = finishing.begin(EVALUATIONS)?;
+    let mut evaluations = TableWriter::evaluations(&folder.dir().join(EVALUATIONS), &names, file)?;
+    let (mut failures, mut examples) = (Vec::new(), Vec::new());
+    let learners = plan.arms.len() * plan.seeds.len();
+    for (arm, index) in arms.iter().enumerate() {
+        let skills = results.skill_indices(&names, arm);
+        for seed in &plan.seeds {
+            if observer.stop() {
+                return Err(RunError::Stopped { dir: folder.dir().into(), finished: learners, learners });
+            }
+            let id = LearnerId { arm, seed: *seed };
+            let Some(result) = parts.result(folder, id)? else {
+                let problem = format!("the results of arm `{}`, seed {seed}, are gone", plan.arms[arm].name);
+                let hint = "give the same command again: these learners are trained anew";
+                return Err(RecordError::Damaged { path: folder.dir().join("parts"), problem, hint }.into());
+            };
+            results.trial_rows(result, *index, &skills).try_for_each(|row| trials.push(row))?;
+            results.evaluation_rows(result, *index, &skills, &names).try_for_each(|row| evaluations.push(row))?;
+            let (name, nets) = results.weights(result)?;
+            finishing.add(&name, &nets)?;
+            failures.extend(result.failure.clone());
+            if seed == &plan.seeds[0] && !plan.continues(arm) && result.failure.is_none() {
+                examples.extend(trajectories(plan, group_of(groups, arm), result));
+            }
+        }
+    }
+    results.bound_rows(&names).into_iter().try_for_each(|row| evaluations.push(row))?;
+    finishing.end(TRIALS, trials.finish()?)?;
+    finishing.end(EVALUATIONS, evaluations.finish()?)?;
+    finishing.add(places::FILE, &places::write_places(&senses::places(plan.world(), backend)?)?)?;
+    finishing.add(trajectories::FILE, &write_trajectories(&examples)?)?;
+    if let Some(sweep) = &plan.sweep {
+        finishing.add(sweep::FILE, &write_sweep(sweep)?)?;
+    }
+    if !failures.is_empty() {
+        finishing.add(failures::FILE, &write_failures(&failures)?)?;
+    }
+    finishing.complete(provenance(failures.len()))?;
+    Ok(())
+}
+
+/// What the rows and the nets of an experiment are called.
+struct Results<'a> {
+    plan: &'a Plan,
+    groups: &'a [Group],
 }
 
 impl Results<'_> {
-    /// Paths and bytes of all result files.
-    ///
-    /// # Errors
-    /// Where a table cannot be written.
-    pub fn files(&self) -> Result<impl Iterator<Item = (String, Vec<u8>)>, RecordError> {
-        let names = self.names();
-        let trials = write_trials(&self.trial_rows(&names), &names)?;
-        let evaluations = write_evaluations(&self.evaluation_rows(&names), &names)?;
-        let tables = [(TRIALS.to_owned(), trials), (EVALUATIONS.to_owned(), evaluations)];
-        let readings = (places::FILE.to_owned(), places::write_places(&self.places)?);
-        let examples = (trajectories::FILE.to_owned(), write_trajectories(&self.trajectories)?);
-        let sweep =
-            self.plan.sweep.as_ref().map(|sweep| Ok((sweep::FILE.to_owned(), write_sweep(sweep)?))).transpose()?;
-        let weights =
-            self.learners.values().map(|result| self.weights(result)).collect::<Result<Vec<_>, RecordError>>()?;
-        Ok(tables.into_iter().chain([readings, examples]).chain(sweep).chain(weights))
-    }
-
     fn names(&self) -> Names {
         let mut names =
             Names { arms: Vec::new(), skills: Vec::new(), variants: vec![TRAINED.to_owned()], rooms: Vec::new() };
@@ -107,81 +164,54 @@ impl Results<'_> {
         names.skills.iter().position(|other| other == name).unwrap_or(0) as u32
     }
 
-    fn trial_rows(&self, names: &Names) -> Vec<TrialRow> {
-        let mut rows = Vec::new();
-        let arms = self.arm_indices();
-        for (id, result) in &self.learners {
-            let skills = self.skill_indices(names, id.arm);
-            for row in result.rows.as_chunks::<ROW_WORDS>().0 {
-                let [skill, trial, actions, steps, reward, success, collisions, taught] = *row;
-                rows.push(TrialRow {
-                    arm: arms[id.arm],
-                    point: self.plan.arms[id.arm].point,
-                    seed: id.seed,
-                    skill: skills[skill as usize],
-                    trial,
-                    actions,
-                    steps,
-                    reward: f32::from_bits(reward),
-                    success: success == 1,
-                    collisions,
-                    taught: taught == 1,
-                });
+    fn trial_rows(&self, result: &LearnerResult, arm: u32, skills: &[u32]) -> impl Iterator<Item = TrialRow> {
+        let (point, seed) = (self.plan.arms[result.id.arm].point, result.id.seed);
+        result.rows.as_chunks::<ROW_WORDS>().0.iter().map(move |row| {
+            let [skill, trial, actions, steps, reward, success, collisions, taught] = *row;
+            TrialRow {
+                arm,
+                point,
+                seed,
+                skill: skills[skill as usize],
+                trial,
+                actions,
+                steps,
+                reward: f32::from_bits(reward),
+                success: success == 1,
+                collisions,
+                taught: taught == 1,
             }
-        }
-        rows
+        })
     }
 
-    fn evaluation_rows(&self, names: &Names) -> Vec<EvaluationRow> {
+    fn evaluation_rows(
+        &self,
+        result: &LearnerResult,
+        arm: u32,
+        skills: &[u32],
+        names: &Names,
+    ) -> impl Iterator<Item = EvaluationRow> {
+        let own = &self.plan.arms[result.id.arm];
+        result.tests.iter().flat_map(move |test| {
+            let row = EvaluationRow {
+                arm,
+                point: own.point,
+                seed: result.id.seed,
+                skill: skills[test.skill as usize],
+                trials: test.trials,
+                actions: test.actions,
+                variant: test.variant,
+                ..BLANK
+            };
+            let altered = test.variant.checked_sub(1).and_then(|number| self.plan.alterations[number as usize].world);
+            let world = &self.plan.worlds[altered.unwrap_or(own.world)].world;
+            by_room(row, world, &test.rooms, names)
+        })
+    }
+
+    /// The planner's own tests, by name and point.
+    fn bound_rows(&self, names: &Names) -> Vec<EvaluationRow> {
         let mut rows = Vec::new();
-        let mut push = |mut row: EvaluationRow, world: &World, rooms: &[RoomSums]| {
-            for (room, sums) in rooms.iter().enumerate().filter(|(_, sums)| sums.episodes > 0) {
-                let name = world.rooms.get(room).map_or(NO_ROOM, |room| &room.name);
-                row.room = names.rooms.iter().position(|known| known == name).unwrap_or(0) as u32;
-                row.episodes = sums.episodes;
-                row.successes = sums.successes;
-                row.steps = sums.steps;
-                row.collisions = sums.collisions;
-                row.reward = sums.reward;
-                row.returned = sums.returned;
-                rows.push(row);
-            }
-        };
-        let blank = EvaluationRow {
-            arm: 0,
-            point: 0,
-            seed: 0,
-            skill: 0,
-            trials: 0,
-            actions: 0,
-            variant: 0,
-            room: 0,
-            episodes: 0,
-            successes: 0,
-            steps: 0,
-            reward: 0.0,
-            returned: 0.0,
-            collisions: 0,
-        };
-        let arms = self.arm_indices();
-        for (id, result) in &self.learners {
-            for test in &result.tests {
-                let row = EvaluationRow {
-                    arm: arms[id.arm],
-                    point: self.plan.arms[id.arm].point,
-                    seed: id.seed,
-                    skill: self.skill_index(names, id.arm, test.skill),
-                    trials: test.trials,
-                    actions: test.actions,
-                    variant: test.variant,
-                    ..blank
-                };
-                let altered =
-                    test.variant.checked_sub(1).and_then(|number| self.plan.alterations[number as usize].world);
-                let world = altered.unwrap_or(self.plan.arms[id.arm].world);
-                push(row, &self.plan.worlds[world].world, &test.rooms);
-            }
-        }
         for (number, group) in self.groups.iter().enumerate() {
             let world = self.plan.world_of(&self.plan.arms[group.arms[0]]);
             for (skill, tests) in group.bounds.iter().enumerate() {
@@ -201,10 +231,10 @@ impl Results<'_> {
                 let arm = names.arms.iter().position(|known| *known == name).unwrap_or(0) as u32;
                 let point = self.plan.arms[group.arms[0]].point;
                 let skill = self.skill_index(names, group.arms[0], skill as u32);
-                push(EvaluationRow { arm, point, skill, ..blank }, world, &rooms);
+                rows.extend(by_room(EvaluationRow { arm, point, skill, ..BLANK }, world, &rooms, names));
             }
         }
-        // Groups come in the order of their first arms, bounds by name and point.
+        // Groups come in the order of their first arms.
         rows.sort_by_key(|row| (row.arm, row.point, row.seed));
         rows
     }
@@ -266,4 +296,23 @@ impl Results<'_> {
             own.filter_map(|((child, threshold), value)| threshold.map(|_| format!("{}={value}", arm.name_of(*child))));
         text.collect::<Vec<_>>().join(",")
     }
+}
+
+/// A row for each room of a world in which test trials began.
+fn by_room(row: EvaluationRow, world: &World, rooms: &[RoomSums], names: &Names) -> Vec<EvaluationRow> {
+    let begun = rooms.iter().enumerate().filter(|(_, sums)| sums.episodes > 0);
+    let each = begun.map(|(room, sums)| {
+        let name = world.rooms.get(room).map_or(NO_ROOM, |room| &room.name);
+        EvaluationRow {
+            room: names.rooms.iter().position(|known| known == name).unwrap_or(0) as u32,
+            episodes: sums.episodes,
+            successes: sums.successes,
+            steps: sums.steps,
+            collisions: sums.collisions,
+            reward: sums.reward,
+            returned: sums.returned,
+            ..row
+        }
+    });
+    each.collect()
 }

@@ -1,6 +1,8 @@
 //! What one learner leaves behind, and its words in a committed part of a run folder.
 
 use super::group::LearnerId;
+use super::words::{PartError, Reader, words_of};
+use crate::record::Failure;
 
 /// Sums of test trials that began in one room.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -51,8 +53,8 @@ pub struct TestResult {
 pub struct LearnerResult {
     /// Whose results these are.
     pub id: LearnerId,
-    /// Whether a number stopped being finite.
-    pub failed: bool,
+    /// Where a number stopped being finite, if one did: the learner was frozen there.
+    pub failure: Option<Failure>,
     /// Transitions learned from.
     pub updates: u32,
     /// Tests, in order.
@@ -65,17 +67,12 @@ pub struct LearnerResult {
     pub thresholds: Vec<f32>,
 }
 
-/// A committed part does not hold what it should.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("a committed part of the run does not hold whole results")]
-pub struct PartError;
-
 impl LearnerResult {
     /// A learner that has left nothing yet.
     pub fn new(id: LearnerId) -> Self {
         Self {
             id,
-            failed: false,
+            failure: None,
             updates: 0,
             tests: Vec::new(),
             rows: Vec::new(),
@@ -84,18 +81,10 @@ impl LearnerResult {
         }
     }
 
-    fn write(&self, words: &mut Vec<u32>) {
-        words.extend([self.id.arm as u32, self.id.seed, u32::from(self.failed), self.updates]);
-        words.push(self.tests.len() as u32);
-        for test in &self.tests {
-            words.extend([test.skill, test.trials, test.actions, test.variant, test.rooms.len() as u32]);
-            for room in &test.rooms {
-                words.extend([room.episodes, room.successes, room.steps, room.collisions]);
-                for bits in [room.reward.to_bits(), room.returned.to_bits()] {
-                    words.extend([bits as u32, (bits >> 32) as u32]);
-                }
-            }
-        }
+    pub(super) fn write(&self, words: &mut Vec<u32>) {
+        words.extend([self.id.arm as u32, self.id.seed, self.updates]);
+        write_failure(words, self.failure.as_ref());
+        write_tests(words, &self.tests);
         words.push(self.rows.len() as u32);
         words.extend(&self.rows);
         for values in [&self.weights, &self.thresholds] {
@@ -104,31 +93,80 @@ impl LearnerResult {
         }
     }
 
-    fn read(reader: &mut Reader<'_>) -> Result<Self, PartError> {
-        let [arm, seed, failed, updates] = reader.words()?;
+    pub(super) fn read(reader: &mut Reader<'_>) -> Result<Self, PartError> {
+        let [arm, seed, updates] = reader.words()?;
         let mut result = Self::new(LearnerId { arm: arm as usize, seed });
-        result.failed = match failed {
-            0 | 1 => failed == 1,
-            _ => return Err(PartError),
-        };
         result.updates = updates;
-        let [tests] = reader.words()?;
-        for _test in 0..tests {
-            let [skill, trials, actions, variant, count] = reader.words()?;
-            let mut rooms = Vec::new();
-            for _room in 0..count {
-                let [episodes, successes, steps, collisions] = reader.words()?;
-                let (reward, returned) = (reader.double()?, reader.double()?);
-                rooms.push(RoomSums { episodes, successes, steps, collisions, reward, returned });
-            }
-            result.tests.push(TestResult { skill, trials, actions, variant, rooms });
-        }
+        result.failure = read_failure(reader)?;
+        result.tests = read_tests(reader)?;
         let [rows] = reader.words()?;
         result.rows = reader.slice(rows as usize)?.to_vec();
         result.weights = reader.singles()?;
         result.thresholds = reader.singles()?;
         Ok(result)
     }
+}
+
+/// A failure is kept as the JSON that `failures.json` will hold: its length in bytes, then words.
+pub(super) fn write_failure(words: &mut Vec<u32>, failure: Option<&Failure>) {
+    // It holds nothing that has no JSON form; were it so, the learner would be listed without its transition.
+    let text = failure.map(|failure| {
+        let bare = || serde_json::to_vec(&Failure { transition: None, weight: None, ..failure.clone() });
+        serde_json::to_vec(failure).or_else(|_| bare()).unwrap_or_default()
+    });
+    let text = text.unwrap_or_default();
+    words.push(text.len() as u32);
+    let word = |bytes: &[u8]| bytes.iter().rev().fold(0, |word, byte| word << 8 | u32::from(*byte));
+    words.extend(text.chunks(4).map(word));
+}
+
+pub(super) fn read_failure(reader: &mut Reader<'_>) -> Result<Option<Failure>, PartError> {
+    let [length] = reader.words()?;
+    let words = reader.slice(length.div_ceil(4) as usize)?;
+    if length == 0 {
+        return Ok(None);
+    }
+    let mut text: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+    text.truncate(length as usize);
+    let failure: Failure = serde_json::from_slice(&text).map_err(|_| PartError)?;
+    // One text for one failure: another was never written.
+    let mut again = Vec::new();
+    write_failure(&mut again, Some(&failure));
+    if again.first() == Some(&length) && again[1..] == *words { Ok(Some(failure)) } else { Err(PartError) }
+}
+
+pub(super) fn write_tests(words: &mut Vec<u32>, tests: &[TestResult]) {
+    words.push(tests.len() as u32);
+    for test in tests {
+        words.extend([test.skill, test.trials, test.actions, test.variant, test.rooms.len() as u32]);
+        for room in &test.rooms {
+            words.extend([room.episodes, room.successes, room.steps, room.collisions]);
+            for value in [room.reward, room.returned] {
+                write_double(words, value);
+            }
+        }
+    }
+}
+
+pub(super) fn read_tests(reader: &mut Reader<'_>) -> Result<Vec<TestResult>, PartError> {
+    let [tests] = reader.words()?;
+    let mut found = Vec::new();
+    for _test in 0..tests {
+        let [skill, trials, actions, variant, count] = reader.words()?;
+        let mut rooms = Vec::new();
+        for _room in 0..count {
+            let [episodes, successes, steps, collisions] = reader.words()?;
+            let (reward, returned) = (reader.double()?, reader.double()?);
+            rooms.push(RoomSums { episodes, successes, steps, collisions, reward, returned });
+        }
+        found.push(TestResult { skill, trials, actions, variant, rooms });
+    }
+    Ok(found)
+}
+
+pub(super) fn write_double(words: &mut Vec<u32>, value: f64) {
+    let bits = value.to_bits();
+    words.extend([bits as u32, (bits >> 32) as u32]);
 }
 
 /// Bytes of a part: little-endian words, the number of learners first.
@@ -145,43 +183,17 @@ pub fn encode(results: &[LearnerResult]) -> Vec<u8> {
 /// # Errors
 /// Where the bytes end early or go on.
 pub fn decode(bytes: &[u8]) -> Result<Vec<LearnerResult>, PartError> {
-    let (chunks, rest) = bytes.as_chunks::<4>();
-    let words: Vec<u32> = chunks.iter().map(|chunk| u32::from_le_bytes(*chunk)).collect();
-    let mut reader = Reader { words: &words };
+    let words = words_of(bytes)?;
+    let mut reader = Reader::new(&words);
     let [count] = reader.words()?;
     let results = (0..count).map(|_| LearnerResult::read(&mut reader)).collect::<Result<Vec<_>, _>>()?;
-    if reader.words.is_empty() && rest.is_empty() { Ok(results) } else { Err(PartError) }
-}
-
-struct Reader<'a> {
-    words: &'a [u32],
-}
-
-impl<'a> Reader<'a> {
-    fn slice(&mut self, count: usize) -> Result<&'a [u32], PartError> {
-        let (head, tail) = self.words.split_at_checked(count).ok_or(PartError)?;
-        self.words = tail;
-        Ok(head)
-    }
-
-    fn words<const N: usize>(&mut self) -> Result<[u32; N], PartError> {
-        self.slice(N)?.try_into().map_err(|_| PartError)
-    }
-
-    fn double(&mut self) -> Result<f64, PartError> {
-        let [low, high] = self.words()?;
-        Ok(f64::from_bits(u64::from(low) | u64::from(high) << 32))
-    }
-
-    fn singles(&mut self) -> Result<Vec<f32>, PartError> {
-        let [count] = self.words()?;
-        Ok(self.slice(count as usize)?.iter().map(|bits| f32::from_bits(*bits)).collect())
-    }
+    reader.end().map(|()| results)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::record::failures::{Number, Weight};
 
     fn example() -> Vec<LearnerResult> {
         let mut result = LearnerResult::new(LearnerId { arm: 2, seed: 9 });
@@ -191,7 +203,18 @@ mod tests {
         result.rows = vec![1, 2, 3];
         result.weights = vec![0.5, -0.0];
         result.thresholds = vec![-2.0, 0.25];
-        vec![result, LearnerResult::new(LearnerId { arm: 0, seed: 1 })]
+        let mut failed = LearnerResult::new(LearnerId { arm: 0, seed: 1 });
+        failed.failure = Some(Failure {
+            arm: "a".to_owned(),
+            point: 3,
+            seed: 1,
+            skill: "dock".to_owned(),
+            trial: 7,
+            what: "a weight is not finite".to_owned(),
+            transition: None,
+            weight: Some(Weight { tensor: "t".to_owned(), index: vec![1, 2], value: Number(f32::NEG_INFINITY) }),
+        });
+        vec![result, failed, LearnerResult::new(LearnerId { arm: 0, seed: 2 })]
     }
 
     #[test]

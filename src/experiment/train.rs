@@ -1,62 +1,72 @@
-//! Trains one cohort: to each test point in turn, and tests there.
+//! Trains one cohort, from nothing, from stems, or from where it was saved.
 //!
 //! Arms that differ in nothing below their roots share those skills: a [`Stem`] is trained once, and every arm's
 //! learner goes on from a copy. Its bytes are those of a learner that trained alone, for the random numbers come from
 //! seeds and counters that the arms have in common.
 
+use super::climb::{Climb, Halt, Keeper, Taker};
+use super::failure::failure_of;
 use super::group::{Group, LearnerId};
-use super::result::{LearnerResult, RoomSums, TestResult};
+use super::result::{LearnerResult, TestResult};
+use super::standing::Standing;
 use super::thresholds::{Fit, fit};
-use crate::backend::{Backend, BackendError, Cohort, Stop, Test};
+use crate::backend::{Backend, Cohort, Stop};
 use crate::config::plan::{Child, Plan, Threshold};
-use crate::evaluate::STATE_ACHIEVED;
-use crate::learner::layout::{Cursor, Episode, LANES, ROW_WORDS, SkillPlan};
+use crate::learner::layout::{Cursor, LANES, ROW_WORDS, SkillPlan};
 use crate::learner::phase::PHASE_FAILED;
-use crate::world::World;
-use glam::Vec2;
-use std::ops::Range;
-
-/// Told how far a cohort is: trials finished by all its learners together.
-pub type Progress<'a> = &'a mut dyn FnMut(u64);
+use crate::record::Failure;
 
 /// A learner that has learned everything below the root.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Stem {
-    seed: u32,
-    cursor: Cursor,
-    nets: Vec<f32>,
-    rows: Vec<u32>,
-    tests: Vec<TestResult>,
+    /// Its seed, and the first of the arms that go on from it.
+    pub id: LearnerId,
+    pub(super) cursor: Cursor,
+    pub(super) nets: Vec<f32>,
+    pub(super) rows: Vec<u32>,
+    pub(super) tests: Vec<TestResult>,
     /// Of each skill below the root that has trials: how success goes with its value.
-    fits: Vec<Option<Fit>>,
+    pub(super) fits: Vec<Option<Fit>>,
+    pub(super) failure: Option<Failure>,
 }
 
-/// Trains the skills below the root of `arm`, for each seed.
+/// Trains the skills below the roots of some learners, or goes on with them from where they were saved.
 ///
 /// # Errors
-/// Where the backend fails.
+/// Where the backend fails, or the keeper ends it.
 pub fn train_stem(
     plan: &Plan,
     group: &Group,
-    (arm, seeds): (usize, &[u32]),
+    learners: &[LearnerId],
+    saved: Option<Standing>,
     backend: &mut dyn Backend,
-    progress: Progress<'_>,
-) -> Result<Vec<Stem>, BackendError> {
-    let ids: Vec<LearnerId> = seeds.iter().map(|seed| LearnerId { arm, seed: *seed }).collect();
-    let mut results: Vec<LearnerResult> = ids.iter().map(|id| LearnerResult::new(*id)).collect();
+    keeper: &mut dyn Keeper,
+) -> Result<Vec<Stem>, Halt> {
     let root = group.shape.skills.len() - 1;
-    backend.load(group.cohort(plan, &ids))?;
-    climb(plan, group, &mut results, backend, 0..root, progress)?;
-    reach(backend, Stop { skill: root as u32, trial: 0 }, &mut |_| {})?;
+    let mut cohort = group.cohort(plan, learners);
+    let results = match saved {
+        Some(standing) => standing.restore(&mut cohort),
+        None => learners.iter().map(|id| LearnerResult::new(*id)).collect(),
+    };
+    backend.load(cohort)?;
+    let mut climb = Climb::new(plan, group, backend, keeper, results);
+    climb.climb(0..root)?;
+    climb.reach(Stop { skill: root as u32, trial: 0 })?;
+    let Climb { backend, results, .. } = climb;
     let cohort = backend.memory()?;
     let prefix = group.shape.skills[root].nets_offset as usize;
-    let stems = results.into_iter().enumerate().map(|(index, result)| Stem {
-        seed: result.id.seed,
-        cursor: cohort.cursors[index],
-        nets: cohort.nets[index * cohort.nets_stride..][..prefix].to_vec(),
-        rows: rows_of(cohort, index).to_vec(),
-        tests: result.tests,
-        fits: (0..root).map(|skill| learned(plan, arm, skill).then(|| fit(cohort, index, skill))).collect(),
+    let stems = results.into_iter().enumerate().map(|(index, result)| {
+        let failure = failure_of(plan, cohort, index, result.id);
+        let learned = |skill: usize| failure.is_none() && learned(plan, result.id.arm, skill);
+        Stem {
+            id: result.id,
+            cursor: cohort.cursors[index],
+            nets: cohort.nets[index * cohort.nets_stride..][..prefix].to_vec(),
+            rows: rows_of(cohort, index).to_vec(),
+            tests: result.tests,
+            fits: (0..root).map(|skill| learned(skill).then(|| fit(cohort, index, skill))).collect(),
+            failure,
+        }
     });
     Ok(stems.collect())
 }
@@ -67,49 +77,67 @@ fn learned(plan: &Plan, arm: usize, skill: usize) -> bool {
     skill.trials > 0 && !skill.planned && skill.mirror.is_none() && skill.ends != 0
 }
 
-/// Trains and tests the learners, from their stems where they have one, and hands back all that they leave.
+/// Trains and tests the learners, from their stems where they have one or from where they were saved, and hands back
+/// all that they leave. Learners of one call have all a stem, or none of them has.
 ///
 /// # Errors
-/// Where the backend fails.
-pub fn train(
+/// Where the backend fails, or the keeper ends it.
+pub fn train<'stems>(
     plan: &Plan,
     group: &Group,
     learners: &[LearnerId],
-    stems: &[Stem],
+    stem_of: &dyn Fn(LearnerId) -> Option<&'stems Stem>,
+    saved: Option<Standing>,
     backend: &mut dyn Backend,
-    progress: Progress<'_>,
-) -> Result<Vec<LearnerResult>, BackendError> {
+    keeper: &mut dyn Keeper,
+) -> Result<Vec<LearnerResult>, Halt> {
     let mut results: Vec<LearnerResult> = learners.iter().map(|id| LearnerResult::new(*id)).collect();
     let skills = group.shape.skills.len();
     let mut cohort = group.cohort(plan, learners);
     let mut first = 0;
     for (index, result) in results.iter_mut().enumerate() {
-        if let Some(stem) = stems.iter().find(|stem| stem.seed == result.id.seed) {
+        if let Some(stem) = stem_of(result.id) {
             graft(plan, &mut cohort, index, result, stem);
             first = skills - 1;
         }
     }
-    backend.load(cohort)?;
-    climb(plan, group, &mut results, backend, first..skills, progress)?;
-    // The last trial of the last skill is behind every learner: let them close.
-    reach(backend, Stop { skill: u32::MAX, trial: u32::MAX }, &mut |_| {})?;
-    let cohort = backend.memory()?;
-    for (index, result) in results.iter_mut().enumerate() {
-        let cursor = &cohort.cursors[index];
-        let nets = &cohort.nets[index * cohort.nets_stride..][..cohort.nets_stride];
-        result.rows = rows_of(cohort, index).to_vec();
-        result.weights = pack(nets, &group.shape.skills);
-        result.thresholds = cohort.settings[(index + 1) * skills - 1].threshold.to_vec();
-        result.failed = cursor.phase == PHASE_FAILED;
-        result.updates = cursor.updates;
+    let trained = saved.as_ref().is_some_and(|standing| standing.trained);
+    if let Some(standing) = saved {
+        results = standing.restore(&mut cohort);
     }
     // The planner's tables are of the world that it knows.
-    let planned = cohort.shared.skills.iter().any(|skill| skill.planned > 0);
-    if !plan.alterations.is_empty() && !planned {
-        let trained = without_lessons(cohort);
-        alter(plan, group, trained, &mut results, backend)?;
+    let altered = !plan.alterations.is_empty() && cohort.shared.skills.iter().all(|skill| skill.planned == 0);
+    let mut climb = Climb::new(plan, group, backend, keeper, results);
+    if trained {
+        alter(&mut climb, &without_lessons(&cohort))?;
+        return Ok(climb.results);
     }
-    Ok(results)
+    climb.backend.load(cohort)?;
+    climb.climb(first..skills)?;
+    // The last trial of the last skill is behind every learner: let them close.
+    climb.reach(Stop { skill: u32::MAX, trial: u32::MAX })?;
+    let cohort = climb.backend.memory()?;
+    for (index, result) in climb.results.iter_mut().enumerate() {
+        close(plan, group, cohort, index, result);
+    }
+    if altered {
+        let trained = without_lessons(cohort);
+        alter(&mut climb, &trained)?;
+    }
+    Ok(climb.results)
+}
+
+/// Notes what a learner leaves after its last trial, or where it failed.
+fn close(plan: &Plan, group: &Group, cohort: &Cohort, index: usize, result: &mut LearnerResult) {
+    let nets = &cohort.nets[index * cohort.nets_stride..][..cohort.nets_stride];
+    result.rows = rows_of(cohort, index).to_vec();
+    result.weights = pack(nets, &group.shape.skills);
+    result.thresholds = cohort.settings[(index + 1) * cohort.skills - 1].threshold.to_vec();
+    result.updates = cohort.cursors[index].updates;
+    // One that failed in its stem has its lesson no longer.
+    if result.failure.is_none() {
+        result.failure = failure_of(plan, cohort, index, result.id);
+    }
 }
 
 /// Puts a stem into learner `index` of a cohort that is still to begin.
@@ -118,7 +146,10 @@ fn graft(plan: &Plan, cohort: &mut Cohort, index: usize, result: &mut LearnerRes
     cohort.nets[index * cohort.nets_stride..][..stem.nets.len()].copy_from_slice(&stem.nets);
     cohort.rows[index * cohort.rows_stride..][..stem.rows.len()].copy_from_slice(&stem.rows);
     result.tests.clone_from(&stem.tests);
-    let root = &plan.arms[result.id.arm].skills[cohort.skills - 1];
+    let arm = &plan.arms[result.id.arm];
+    let own = |failure: Failure| Failure { arm: arm.name.clone(), point: arm.point, ..failure };
+    result.failure = stem.failure.clone().map(own);
+    let root = &arm.skills[cohort.skills - 1];
     let settings = &mut cohort.settings[(index + 1) * cohort.skills - 1];
     for (child, threshold) in root.applicable.iter().enumerate() {
         let Child::Skill(skill) = root.children[child] else { continue };
@@ -128,55 +159,12 @@ fn graft(plan: &Plan, cohort: &mut Cohort, index: usize, result: &mut LearnerRes
     }
 }
 
-/// Brings all learners through the trials of some skills, with every test on the way.
-fn climb(
-    plan: &Plan,
-    group: &Group,
-    results: &mut [LearnerResult],
-    backend: &mut dyn Backend,
-    skills: Range<usize>,
-    progress: Progress<'_>,
-) -> Result<(), BackendError> {
-    let ids: Vec<LearnerId> = results.iter().map(|result| result.id).collect();
-    for skill in skills {
-        for point in test_points(plan, &ids, skill) {
-            let stop = Stop { skill: skill as u32, trial: point };
-            let cursors = reach(backend, stop, &mut |cursors| {
-                progress(ids.iter().zip(cursors).map(|(id, cursor)| trials_of(plan, *id, cursor)).sum());
-            })?;
-            let wanted = |id: &LearnerId| tested_at(plan, *id, skill, point);
-            if plan.evaluate.episodes == 0 || !ids.iter().any(wanted) {
-                continue;
-            }
-            let test = Test { skill: skill as u32, number: point, episodes: plan.evaluate.episodes };
-            let episodes = backend.evaluate(test)?;
-            for (index, _) in ids.iter().enumerate().filter(|(_, id)| wanted(id)) {
-                let count = plan.evaluate.episodes as usize;
-                let own = &episodes[index * count..(index + 1) * count];
-                let actions = cursors[index].actions;
-                let rooms = sums(plan.world_of(&plan.arms[group.arms[0]]), own);
-                results[index].tests.push(TestResult {
-                    skill: skill as u32,
-                    trials: point,
-                    actions,
-                    variant: 0,
-                    rooms,
-                });
-            }
-        }
-    }
-    Ok(())
-}
-
 /// Tests what was learned under each of the plan's alterations.
-fn alter(
-    plan: &Plan,
-    group: &Group,
-    trained: Cohort,
-    results: &mut [LearnerResult],
-    backend: &mut dyn Backend,
-) -> Result<(), BackendError> {
+fn alter(climb: &mut Climb<'_>, trained: &Cohort) -> Result<(), Halt> {
+    let (plan, group) = (climb.plan, climb.group);
     let root = group.shape.skills.len() - 1;
+    let arm = &plan.arms[group.arms[0]];
+    let wanted: Vec<bool> = trained.cursors.iter().map(|cursor| cursor.phase != PHASE_FAILED).collect();
     for (number, (alteration, shared)) in plan.alterations.iter().zip(&group.altered).enumerate() {
         let mut cohort = trained.clone();
         cohort.shared.clone_from(shared);
@@ -188,17 +176,15 @@ fn alter(
             settings.noise_light = noise.light;
             settings.noise_compass = noise.compass;
         }
-        backend.load(cohort)?;
-        // The same number as the last test in the world of training: the same dice, as far as they go.
-        let trials = plan.arms[results[0].id.arm].skills[root].trials;
-        let count = plan.evaluate.episodes as usize;
-        let episodes = backend.evaluate(Test { skill: root as u32, number: trials, episodes: count as u32 })?;
-        for (index, result) in results.iter_mut().enumerate() {
-            let world = alteration.world.unwrap_or(plan.arms[result.id.arm].world);
-            let rooms = sums(&plan.worlds[world].world, &episodes[index * count..(index + 1) * count]);
-            let (actions, variant) = (trained.cursors[index].actions, number as u32 + 1);
-            result.tests.push(TestResult { skill: root as u32, trials, actions, variant, rooms });
-        }
+        climb.backend.load(cohort)?;
+        let taker = Taker {
+            skill: root as u32,
+            // The same number as the last test in the world of training: the same dice, as far as they go.
+            trials: plan.arms[climb.results[0].id.arm].skills[root].trials,
+            variant: number as u32 + 1,
+            world: &plan.worlds[alteration.world.unwrap_or(arm.world)].world,
+        };
+        climb.test(&taker, &wanted, &trained.cursors, Some(trained))?;
     }
     Ok(())
 }
@@ -220,69 +206,8 @@ fn without_lessons(cohort: &Cohort) -> Cohort {
     }
 }
 
-/// Moves all learners on until they hold at `stop`, showing where they stand after every stretch.
-fn reach(backend: &mut dyn Backend, stop: Stop, show: &mut dyn FnMut(&[Cursor])) -> Result<Vec<Cursor>, BackendError> {
-    let mut last = Vec::new();
-    loop {
-        let cursors = backend.advance(stop)?;
-        show(cursors);
-        if cursors.iter().all(|cursor| stop.holds(cursor)) {
-            return Ok(cursors.to_vec());
-        }
-        // Every stretch moves some learner; a device on which none moves has stopped computing.
-        if cursors == last {
-            let message = "the learners no longer move".to_owned();
-            return Err(BackendError::Device { kernel: "advance", message });
-        }
-        last = cursors.to_vec();
-    }
-}
-
-/// Numbers of trials after which some of the learners are tested in a skill, ascending.
-fn test_points(plan: &Plan, learners: &[LearnerId], skill: usize) -> Vec<u32> {
-    let mut points = Vec::new();
-    for id in learners {
-        let own = &plan.arms[id.arm].skills[skill];
-        points.extend(own.tested_at.iter().copied().filter(|point| *point <= own.trials));
-        points.push(own.trials);
-    }
-    points.sort_unstable();
-    points.dedup();
-    points
-}
-
-fn tested_at(plan: &Plan, id: LearnerId, skill: usize, point: u32) -> bool {
-    let own = &plan.arms[id.arm].skills[skill];
-    point == own.trials || (point < own.trials && own.tested_at.contains(&point))
-}
-
-/// Trials that a learner has finished, over all skills.
-fn trials_of(plan: &Plan, id: LearnerId, cursor: &Cursor) -> u64 {
-    let skills = &plan.arms[id.arm].skills;
-    let before: u32 = skills.iter().take(cursor.skill as usize).map(|skill| skill.trials).sum();
-    u64::from(before + cursor.trial)
-}
-
 fn rows_of(cohort: &Cohort, learner: usize) -> &[u32] {
     &cohort.rows[learner * cohort.rows_stride..][..cohort.cursors[learner].rows as usize * ROW_WORDS]
-}
-
-/// Sums of a learner's test trials by the room in which they began; one entry per room of the world.
-fn sums(world: &World, episodes: &[Episode]) -> Vec<RoomSums> {
-    let mut rooms = vec![RoomSums::default(); world.rooms.len() + 1];
-    for episode in episodes {
-        let start = Vec2::new(episode.start_x, episode.start_y);
-        let agent = &episode.agent;
-        rooms[world.room_of(start).unwrap_or(world.rooms.len())].add(&RoomSums {
-            episodes: 1,
-            successes: u32::from(episode.state == STATE_ACHIEVED),
-            steps: agent.step,
-            collisions: agent.collisions,
-            reward: f64::from(agent.reward),
-            returned: f64::from(agent.returned),
-        });
-    }
-    rooms
 }
 
 /// The weights of a learner's nets, without what the optimiser keeps beside them.

@@ -22,7 +22,7 @@ fn results() -> Vec<LearnerResult> {
     let group = &experiment.groups[0];
     let mut backend = CpuBackend::new(1, None).unwrap();
     let ids = group.learners(&experiment.plan);
-    train(&experiment.plan, group, &ids, &[], &mut backend, &mut |_| {}).unwrap()
+    train(&experiment.plan, group, &ids, &|_| None, None, &mut backend, &mut ()).unwrap()
 }
 
 /// The content of a part: what is read is written back as it was.

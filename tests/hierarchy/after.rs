@@ -18,7 +18,6 @@ use skilltree::learner::layout::{Episode, LESSON_HEADER, RECORD_WORDS, VALUE_WOR
 use skilltree::lesson::record::ENDED;
 use skilltree::record::weights::read_weights;
 use skilltree::record::{Provenance, RunFolder};
-use std::collections::BTreeMap;
 use tempfile::TempDir;
 
 fn number(plan: &Plan, name: &str) -> usize {
@@ -29,8 +28,9 @@ fn number(plan: &Plan, name: &str) -> usize {
 fn trained(plan: &Plan, group: &Group) -> (Vec<LearnerResult>, Cohort) {
     let mut backend = CpuBackend::new(2, None).expect("threads");
     let ids = group.learners(plan);
-    let stems = train_stem(plan, group, (0, &plan.seeds), &mut backend, &mut |_| {}).expect("the CPU does not fail");
-    let results = train(plan, group, &ids, &stems, &mut backend, &mut |_| {}).expect("the CPU does not fail");
+    let stems = train_stem(plan, group, &ids, None, &mut backend, &mut ()).expect("the CPU does not fail");
+    let stem_of = |id| stems.iter().find(|stem| stem.id == id);
+    let results = train(plan, group, &ids, &stem_of, None, &mut backend, &mut ()).expect("the CPU does not fail");
     let memory = backend.memory().expect("memory").clone();
     (results, memory)
 }
@@ -254,8 +254,7 @@ fn example_trials_are_tests_from_named_places() {
     let plan = short("", &[silent, "seeds='3..5'", "skill.go-home.applicable={ dock = 'learned' }"]);
     let group = only_group(&plan);
     let (results, memory) = trained(&plan, &group);
-    let learners: BTreeMap<_, _> = results.iter().map(|result| (result.id, result.clone())).collect();
-    let found = trajectories(&plan, std::slice::from_ref(&group), &learners);
+    let found = trajectories(&plan, &group, &results[0]);
     let places = &plan.world().places;
     assert_eq!((found.len(), places.len()), (1, 1));
     let example = &found[0];

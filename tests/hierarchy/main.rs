@@ -14,4 +14,5 @@ mod persistence;
 mod planned;
 mod senses;
 mod stems;
+mod stopped;
 mod trees;

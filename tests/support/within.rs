@@ -56,7 +56,7 @@ impl Experiment {
         }
         let mut backend = CpuBackend::new(1, None).map_err(RunError::Backend)?;
         let provenance = Provenance { seeds: self.plan.seeds.clone(), ..Provenance::default() };
-        let options = Options { cohort: Some(1) };
+        let options = Options { cohort: Some(1), ..Options::default() };
         run(&self.plan, &self.groups, folder, &mut backend, options, provenance, &mut Nobody)
     }
 }
