@@ -6,7 +6,7 @@
 use super::group::LearnerId;
 use crate::backend::Cohort;
 use crate::config::plan::{Arm, Plan};
-use crate::learner::layout::{LANES, SkillPlan};
+use crate::learner::layout::{LANES, LESSON_HEADER, SkillPlan};
 use crate::learner::memory::{Learner, Scratch};
 use crate::learner::phase::PHASE_FAILED;
 use crate::lesson::replay::{aimed, load_record};
@@ -67,7 +67,7 @@ fn transition(arm: &Arm, cohort: &Cohort, index: usize) -> Transition {
     load_record(&learner, &mut scratch, step);
     encode(&cohort.shared, &mut scratch, skill, mirrored);
     forward(learner.nets, &mut scratch, skill, 0);
-    let target = aimed(&learner, &scratch);
+    let target = aimed(&learner, LESSON_HEADER as u32 + step * skill.record_words);
     let first = if taught { skill.bank_offset } else { skill.memory_offset };
     let place = (learner.cursor.replay_lesson - first) / skill.lesson_stride;
     let done = (scratch.record[8] & 0xff) as usize;
