@@ -55,7 +55,7 @@ mod tests {
         lanes_sums(&mut partials, 2);
         assert_eq!((partials[0][0], partials[1][0], partials[2][0]), (512.0, 512.0, 0.5));
         assert_eq!(lanes_min(&values), 0.5);
-        assert_eq!(lanes_or(&std::array::from_fn(|i| 1 << i)), !0);
+        assert_eq!(lanes_or(&std::array::from_fn::<u32, LANES, _>(|i| 1 << i)), !0);
     }
 
     /// The order is part of the contract: another order gives other bits on this input.
