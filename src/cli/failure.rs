@@ -1,6 +1,7 @@
 //! What the user is told when a command fails, and the exit code.
 
 use crate::backend::BackendError;
+use crate::bench::BenchError;
 use crate::config::ConfigError;
 use crate::experiment::group::SetupError;
 use crate::experiment::run::RunError;
@@ -43,6 +44,9 @@ pub enum Failure {
     /// A run folder cannot be read or written.
     #[error(transparent)]
     Record(#[from] RecordError),
+    /// A benchmark cannot be run, or its executors disagree.
+    #[error(transparent)]
+    Bench(BenchError),
     /// A report cannot be made.
     #[error(transparent)]
     Report(#[from] ReportError),
@@ -54,7 +58,12 @@ impl Failure {
         match self {
             Self::Usage { .. } | Self::Config(_) | Self::Setup(_) => 2,
             Self::Backend(BackendError::Device { .. }) => 75,
-            Self::Output(_) | Self::Parity { .. } | Self::Backend(_) | Self::Record(_) | Self::Report(_) => 1,
+            Self::Output(_)
+            | Self::Parity { .. }
+            | Self::Backend(_)
+            | Self::Record(_)
+            | Self::Report(_)
+            | Self::Bench(_) => 1,
         }
     }
 }
@@ -64,6 +73,15 @@ impl From<RunError> for Failure {
         match error {
             RunError::Record(error) => Self::Record(error),
             RunError::Backend(error) => Self::Backend(error),
+        }
+    }
+}
+
+impl From<BenchError> for Failure {
+    fn from(error: BenchError) -> Self {
+        match error {
+            BenchError::Backend(error) => Self::Backend(error),
+            other => Self::Bench(other),
         }
     }
 }
