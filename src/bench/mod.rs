@@ -1,12 +1,25 @@
 //! How fast is this machine, and how near to its limits? `skilltree bench`.
 //!
-//! Every kind of work is first done by all who can do it, and their bytes are compared: nothing that is wrong is
-//! timed. [`simulate`] and [`replay`] hold the work and a scalar reference, which does the same without lanes;
-//! [`export`] writes the same work for programs in other languages.
+//! Every kind of work ([`tasks`]) is done by all who can do it ([`executor`]), in turn with a control loop and with the
+//! [`limits`] of one core, and in every round their bytes are compared: no figure is told of what is wrong
+//! ([`measure`]). [`cost`] counts what a unit of work needs, so that a rate becomes a share of a limit.
+//! [`simulate`] and [`replay`] hold the work and a scalar reference, which does the same without lanes; [`export`]
+//! writes the same work for programs in other languages.
 
+pub mod archive;
+pub mod clock;
+pub mod cost;
+pub mod executor;
 pub mod export;
+pub mod limits;
+pub mod measure;
 pub mod replay;
+pub mod result;
+pub mod run;
+pub mod scaling;
 pub mod simulate;
+pub mod tasks;
+pub mod text;
 pub mod workload;
 
 use crate::backend::BackendError;
@@ -20,7 +33,7 @@ use std::path::PathBuf;
 pub enum BenchError {
     /// Two executors leave different bytes of the same work.
     #[error(
-        "{work}: {left} and {right} differ: {what}\nhint: nothing was timed; `skilltree devices --parity` tells more"
+        "{work}: {left} and {right} differ: {what}\nhint: no figure means anything; `skilltree devices --parity` tells more"
     )]
     Differs {
         /// Which work.

@@ -70,20 +70,27 @@ impl Drill {
         Ok(())
     }
 
-    /// The same by the scalar reference, on nets from [`Drill::nets`]; returns the transitions replayed.
-    pub fn replay_scalar(&self, nets: &mut [Nets], passes: u32) -> u64 {
+    /// The same by the scalar reference, on nets from [`Drill::nets`].
+    pub fn replay_scalar(&self, nets: &mut [Nets], passes: u32) {
         let shared = &self.group.shared;
-        let mut transitions = 0;
         for (number, nets) in nets.iter_mut().enumerate() {
             let settings = self.settings(number);
             for _pass in 0..passes {
                 for lesson in 0..settings.lessons {
                     let at = self.lesson_of(number, lesson);
-                    transitions += nets.replay(&shared.bank[at..], self.skill(), settings, &shared.atlas);
+                    nets.replay(&shared.bank[at..], self.skill(), settings, &shared.atlas);
                 }
             }
         }
-        transitions
+    }
+
+    /// Transitions that all learners replay in so many passes.
+    pub fn transitions(&self, passes: u32) -> u64 {
+        let learners = 0..self.cohort.cursors.len();
+        let lessons =
+            learners.flat_map(|learner| (0..self.settings(learner).lessons).map(move |number| (learner, number)));
+        let steps = lessons.map(|(learner, number)| u64::from(self.group.shared.bank[self.lesson_of(learner, number)]));
+        steps.sum::<u64>() * u64::from(passes)
     }
 
     /// The nets of a cohort of this shape, for the scalar reference.
@@ -159,8 +166,8 @@ impl Nets {
         self.nets.iter().flat_map(|net| of(&net.weights)).collect()
     }
 
-    /// Learns from a taught lesson backwards; returns the transitions learned from.
-    pub fn replay(&mut self, lesson: &[u32], skill: &SkillPlan, settings: &Settings, atlas: &[u32]) -> u64 {
+    /// Learns from a taught lesson backwards.
+    pub fn replay(&mut self, lesson: &[u32], skill: &SkillPlan, settings: &Settings, atlas: &[u32]) {
         let steps = lesson[0] as usize;
         let (mut next_best, mut next_return) = (0.0, 0.0);
         let open = lesson[1] == CUT && settings.timeout_terminal == 0;
@@ -185,7 +192,6 @@ impl Nets {
             self.learn(child, &x, &hidden[child], q[child], goal - q[child], settings);
             (next_best, next_return) = (best, goal);
         }
-        steps as u64
     }
 
     fn hidden(&self, net: &Net, x: &[f32]) -> Vec<f32> {

@@ -62,9 +62,9 @@ pub(super) fn replay(learners: u32) -> Result<(Vec<Tensor>, Map<String, Value>),
     let weights = |nets: &[Nets]| nets.iter().flat_map(Nets::weights).collect::<Vec<f32>>();
     let mut nets = drill.nets(drill.cohort());
     let initial = weights(&nets);
-    let first = drill.replay_scalar(&mut nets, 1);
+    drill.replay_scalar(&mut nets, 1);
     let once = weights(&nets);
-    let transitions = first + drill.replay_scalar(&mut nets, PASSES - 1);
+    drill.replay_scalar(&mut nets, PASSES - 1);
     let all = weights(&nets);
     let mut backend = CpuBackend::new(0, None)?;
     backend.load(drill.cohort().clone())?;
@@ -93,7 +93,7 @@ pub(super) fn replay(learners: u32) -> Result<(Vec<Tensor>, Map<String, Value>),
     }
     let numbers = json!({
         "passes": PASSES,
-        "transitions": transitions,
+        "transitions": drill.transitions(PASSES),
         "gamma": settings.gamma,
         "lambda": settings.lambda,
         "rate": settings.rate,
