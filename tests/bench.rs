@@ -89,6 +89,9 @@ fn measure(task: &dyn Task, first: Executor, fault: Fault) -> Result<Measured, B
     Ok(measured)
 }
 
+/// Work, what is wrong with the second executor's, and the first executor.
+type Case<'a> = (&'a dyn Task, Fault, fn() -> Executor);
+
 #[test]
 fn one_wrong_bit_leaves_no_figure() {
     let hierarchy = Hierarchy::new(2).expect("the built-in experiment");
@@ -96,7 +99,7 @@ fn one_wrong_bit_leaves_no_figure() {
     let (steps, replay) = (RobotSteps::new(Size::TINY, 1), Replay::new(Size::TINY, true));
     let (steps, replay) = (steps.expect("robots"), replay.expect("learners"));
     let decisions = Decisions::new(&hierarchy, Size::TINY);
-    let cases: [(&dyn Task, Fault, fn() -> Executor); 3] = [
+    let cases: [Case<'_>; 3] = [
         (&steps, Fault::Robot, Executor::scalar),
         (&replay, Fault::Weight, Executor::scalar),
         (&decisions, Fault::Episode, cpu),

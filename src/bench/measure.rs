@@ -122,9 +122,10 @@ fn row(
         let found = executors.iter().position(|other| other.about.kind == kind && other.about.threads == threads)?;
         (found != number && taken[found].len() == samples.len()).then(|| &taken[found])
     };
-    let over_scalar = of(Kind::Scalar, 1).and_then(|scalar| {
-        Spread::of(samples.iter().zip(scalar).map(|(own, scalar)| own.per_cpu_second / scalar.per_cpu_second))
-    });
+    // A graphics card takes no CPU-seconds.
+    let rate = |sample: &Sample| if own.kind == Kind::Gpu { sample.per_second } else { sample.per_cpu_second };
+    let over_scalar = of(Kind::Scalar, 1)
+        .and_then(|scalar| Spread::of(samples.iter().zip(scalar).map(|(own, scalar)| rate(own) / rate(scalar))));
     let over_one_thread = of(Kind::Cpu, 1).filter(|_| own.kind == Kind::Cpu).and_then(|one| {
         let free = samples.iter().zip(one).filter(|(own, _)| own.free);
         Spread::of(free.map(|(own, one)| own.per_second / one.per_second))

@@ -87,7 +87,7 @@ pub struct Row {
     pub per_second: Spread,
     /// Units per CPU-second of this process.
     pub per_cpu_second: Spread,
-    /// Rate per CPU-second over that of the scalar reference, sample by sample.
+    /// Rate per CPU-second over that of the scalar reference, sample by sample; of a graphics card, rate per second.
     pub over_scalar: Option<Spread>,
     /// On several threads: rate per second over that on one, of the samples in which the cores were free.
     pub over_one_thread: Option<Spread>,

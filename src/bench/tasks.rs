@@ -56,9 +56,9 @@ pub struct Size {
 
 impl Size {
     /// Enough for cores, and not too much for a scalar reference and for software adapters.
-    pub const HOST: Self = Self { robots: 4096, rounds: 24, learners: 64, passes: 8, episodes: 4 };
+    pub const HOST: Self = Self { robots: 4096, rounds: 24, learners: 64, passes: 4, episodes: 1 };
     /// Enough to fill a graphics card.
-    pub const DEVICE: Self = Self { robots: 65_536, rounds: 8, learners: 4096, passes: 2, episodes: 4 };
+    pub const DEVICE: Self = Self { robots: 65_536, rounds: 8, learners: 4096, passes: 2, episodes: 2 };
     /// Only to see that everything works.
     pub const TINY: Self = Self { robots: 64, rounds: 2, learners: 2, passes: 1, episodes: 1 };
 }
@@ -175,7 +175,11 @@ impl Task for Replay {
             }
             None => {
                 nets.extend(self.drill.nets(self.drill.cohort()));
-                timed(|| Ok(self.drill.replay_scalar(&mut nets, self.passes)))?.1
+                let replay = || {
+                    self.drill.replay_scalar(&mut nets, self.passes);
+                    Ok(())
+                };
+                timed(replay)?.1
             }
         };
         let words = nets.iter().flat_map(Nets::weights).map(f32::to_bits).collect();
@@ -301,7 +305,8 @@ impl Task for Learners<'_> {
         let Some(backend) = executor.backend() else { return Ok(None) };
         let Hierarchy { plan, group } = self.hierarchy;
         let (results, span) = timed(|| Ok(train(plan, group, &self.hierarchy.ids(count), &[], backend, &mut |_| {})?))?;
-        let common = self.host.min(self.device) as usize;
+        // A card trains more of them, of which the first are also trained on the CPU.
+        let common = if self.device == 0 { self.host } else { self.host.min(self.device) } as usize;
         let weights = results.iter().take(common).flat_map(|result| &result.weights);
         Ok(Some(Done { units: results.len() as u64, span, words: weights.map(|weight| weight.to_bits()).collect() }))
     }
