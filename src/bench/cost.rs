@@ -8,7 +8,8 @@
 //! Bytes are those of nets: what is read, and what is written, of the lanes' rows. Everything else fits registers or
 //! the nearest cache.
 
-use crate::learner::layout::{LANES, MAX_SKILLS, SkillPlan, WorldPlan};
+use crate::learner::layout::{LANES, MAX_ROWS, MAX_SKILLS, SkillPlan, WorldPlan};
+use crate::qnet::backward::{OPTIMISER_ADAM_ROWS, OPTIMISER_SGD};
 use serde::{Deserialize, Serialize};
 
 /// Cost of one unit of work.
@@ -80,19 +81,24 @@ pub fn forward(skill: &SkillPlan) -> Cost {
     Cost { lane_operations: (hidden + values) as f64, bytes: (nets * row_bytes(inputs + 1 + outputs)) as f64 }
 }
 
-/// One transition replayed: nets forwards, odds, and one net backwards with the optimiser's moments.
-pub fn transition(skill: &SkillPlan, adam: bool) -> Cost {
+/// One transition replayed: nets forwards, odds, and one net backwards by one of the optimisers of `qnet/backward`.
+pub fn transition(skill: &SkillPlan, optimiser: u32) -> Cost {
     let rows = skill.rows as usize;
     let odds = skill.children as usize * (EXPONENTIAL + 4);
     let errors = LANES * 4;
-    // The slope; two moments with their decay; the step. Plain descent: a velocity and the step.
-    let weight =
-        if adam { 1 + (3 + FLUSH) + (4 + FLUSH) + (1 + 1 + RECIPROCAL_SQRT + 1 + 1) } else { 1 + (3 + FLUSH) + 1 };
-    let slabs = if adam { 3 } else { 2 };
+    // A velocity, or a mean, with its decay; Adam's square and root.
+    let (mean, square, root) = (3 + FLUSH, 4 + FLUSH, 1 + RECIPROCAL_SQRT + 1);
+    let (weight, apart, slabs) = match optimiser {
+        OPTIMISER_SGD => (1 + mean + 1, 0, 2),
+        // Two means of squares, then square and root once for each row.
+        OPTIMISER_ADAM_ROWS => (mean + 2, 2 * (LANES + REDUCE) + MAX_ROWS * (1 + square + root), 2),
+        _ => (1 + mean + square + root + 2, 0, 3),
+    };
     let forward = forward(skill);
+    let squares = if optimiser == OPTIMISER_ADAM_ROWS { 2 * MAX_ROWS * size_of::<f32>() } else { 0 };
     Cost {
-        lane_operations: forward.lane_operations + (odds + errors + LANES * rows * weight) as f64,
-        bytes: forward.bytes + (2 * slabs * row_bytes(rows)) as f64,
+        lane_operations: forward.lane_operations + (odds + errors + LANES * rows * weight + apart) as f64,
+        bytes: forward.bytes + (2 * slabs * row_bytes(rows) + squares) as f64,
     }
 }
 

@@ -13,7 +13,7 @@ use crate::learner::memory::Learner;
 use crate::lesson::record::CUT;
 use crate::lesson::replay::taught_lesson;
 use crate::math::functions::{exponential, flush, reciprocal, reciprocal_sqrt, square_root, squash};
-use crate::qnet::backward::CLOCK_SECOND;
+use crate::qnet::backward::{CLOCK_SECOND, OPTIMISER_ADAM_ROWS, OPTIMISER_SGD};
 use crate::qnet::forward::net_of;
 use crate::skill::encode::{GROUP_BUMPERS, GROUP_LIGHT, GROUP_SONAR};
 use bytemuck::Zeroable;
@@ -116,6 +116,8 @@ struct Net {
     weights: Slab,
     means: Slab,
     squares: Slab,
+    /// Second moment of each row of weights, for the rule that has no others.
+    rows: Vec<f32>,
     first: f32,
     second: f32,
 }
@@ -148,6 +150,7 @@ impl Nets {
                     weights: slab(at),
                     means: slab(at + slab_words),
                     squares: slab(at + 2 * slab_words),
+                    rows: words[at + 2 * slab_words..][..inputs + 3].to_vec(),
                     first: words[clock],
                     second: words[clock + CLOCK_SECOND as usize],
                 }
@@ -208,21 +211,25 @@ impl Nets {
     fn learn(&mut self, child: usize, x: &[f32], hidden: &[f32], value: f32, delta: f32, settings: &Settings) {
         let net = &mut self.nets[child];
         let error = delta * (1.0 - value * value);
-        if settings.optimiser == 1 {
-            net.first = flush(net.first * settings.beta1);
-            net.second = flush(net.second * settings.beta2);
-            let rate = settings.rate * square_root(1.0 - net.second) * reciprocal(1.0 - net.first);
-            net.update(x, hidden, error, |weight, mean, square, slope| {
-                *mean = flush(settings.beta1 * *mean + (1.0 - settings.beta1) * slope);
-                *square = flush(settings.beta2 * *square + (1.0 - settings.beta2) * (slope * slope));
-                *weight += rate * *mean * reciprocal_sqrt(*square + settings.epsilon2);
-            });
-        } else {
+        if settings.optimiser == OPTIMISER_SGD {
             net.update(x, hidden, error, |weight, velocity, _, slope| {
                 *velocity = flush(settings.beta1 * *velocity + settings.rate * slope);
                 *weight += *velocity;
             });
+            return;
         }
+        net.first = flush(net.first * settings.beta1);
+        net.second = flush(net.second * settings.beta2);
+        let rate = settings.rate * square_root(1.0 - net.second) * reciprocal(1.0 - net.first);
+        if settings.optimiser == OPTIMISER_ADAM_ROWS {
+            net.update_rows(x, hidden, error, rate, settings);
+            return;
+        }
+        net.update(x, hidden, error, |weight, mean, square, slope| {
+            *mean = flush(settings.beta1 * *mean + (1.0 - settings.beta1) * slope);
+            *square = flush(settings.beta2 * *square + (1.0 - settings.beta2) * (slope * slope));
+            *weight += rate * *mean * reciprocal_sqrt(*square + settings.epsilon2);
+        });
     }
 }
 
@@ -243,15 +250,56 @@ impl Net {
         }
         rule(&mut weights.bias, &mut means.bias, &mut squares.bias, error);
     }
+
+    /// Adam with one second moment for each row of weights: of one input, of the hidden biases, of the output.
+    fn update_rows(&mut self, x: &[f32], hidden: &[f32], error: f32, rate: f32, settings: &Settings) {
+        let Self { weights, means, rows, .. } = self;
+        let slope = |unit: usize| error * weights.output[unit] * (1.0 - hidden[unit] * hidden[unit]);
+        let slopes: Vec<f32> = (0..LANES).map(slope).collect();
+        let below = mean_square(&slopes);
+        let above = mean_square(hidden);
+        // The factor that a row's gradient has in common, and the pace at which the row moves.
+        let mut pace = |row: usize, factor: f32, alike: f32| {
+            let square = settings.beta2 * rows[row] + (1.0 - settings.beta2) * (factor * factor * alike);
+            rows[row] = flush(square);
+            ((1.0 - settings.beta1) * factor, rate * reciprocal_sqrt(rows[row] + settings.epsilon2))
+        };
+        let step = |weight: &mut f32, mean: &mut f32, (factor, pace): (f32, f32), own: f32| {
+            *mean = flush(settings.beta1 * *mean + factor * own);
+            *weight += pace * *mean;
+        };
+        let bias = x.len();
+        for (input, factor) in x.iter().copied().chain([1.0]).enumerate() {
+            let moves = pace(input, factor, below);
+            for unit in 0..LANES {
+                step(&mut weights.units[unit][input], &mut means.units[unit][input], moves, slopes[unit]);
+            }
+        }
+        let moves = pace(bias + 1, error, above);
+        for unit in 0..LANES {
+            step(&mut weights.output[unit], &mut means.output[unit], moves, hidden[unit]);
+        }
+        step(&mut weights.bias, &mut means.bias, pace(bias + 2, error, 1.0), 1.0);
+    }
 }
 
-fn output(net: &Net, hidden: &[f32]) -> f32 {
-    let mut sums: Vec<f32> = net.weights.output.iter().zip(hidden).map(|(weight, active)| active * weight).collect();
+/// Mean of the squares of 32 values.
+fn mean_square(values: &[f32]) -> f32 {
+    tree_sum(values.iter().map(|value| value * value).collect()) * 0.031_25
+}
+
+/// Sum in the lanes' order.
+fn tree_sum(mut sums: Vec<f32>) -> f32 {
     while sums.len() > 1 {
         let half = sums.len() / 2;
         sums = (0..half).map(|lane| sums[lane] + sums[lane + half]).collect();
     }
-    squash(sums[0] + net.weights.bias)
+    sums[0]
+}
+
+fn output(net: &Net, hidden: &[f32]) -> f32 {
+    let sum = tree_sum(net.weights.output.iter().zip(hidden).map(|(weight, active)| active * weight).collect());
+    squash(sum + net.weights.bias)
 }
 
 /// Inputs of the nets from one recorded step.

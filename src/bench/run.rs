@@ -6,7 +6,7 @@ use super::executor::{Choice, Executor, Kind, open};
 use super::limits::Meter;
 use super::measure::Measured;
 use super::result::{FORMAT, Origin, Report};
-use super::tasks::{Decisions, Hierarchy, Learners, Replay, RobotSteps, Size, Task};
+use super::tasks::{Decisions, Hierarchy, Learners, Replay, RobotSteps, Rule, Size, Task};
 use std::time::SystemTime;
 
 /// Whole learners that a graphics card trains at a time, unless told otherwise.
@@ -41,8 +41,9 @@ pub fn run(options: Options, command: &str, note: &mut dyn FnMut(&str)) -> Resul
     let mut tasks: Vec<Box<dyn Task + '_>> = vec![
         Box::new(RobotSteps::new(size, 1)?),
         Box::new(RobotSteps::new(size, HELD)?),
-        Box::new(Replay::new(size, true)?),
-        Box::new(Replay::new(size, false)?),
+        Box::new(Replay::new(size, Rule::Adam)?),
+        Box::new(Replay::new(size, Rule::AdamRows)?),
+        Box::new(Replay::new(size, Rule::Sgd)?),
         Box::new(Decisions::new(&hierarchy, size)),
     ];
     if host > 0 {

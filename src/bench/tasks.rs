@@ -12,6 +12,7 @@ use crate::backend::{Cohort, Test};
 use crate::config::plan::Plan;
 use crate::experiment::group::{Group, LearnerId, groups};
 use crate::experiment::train::train;
+use crate::qnet::backward::{OPTIMISER_ADAM_ROWS, OPTIMISER_SGD};
 
 /// A piece of work done once.
 #[derive(Debug)]
@@ -120,6 +121,17 @@ impl Task for RobotSteps {
     }
 }
 
+/// How weights are updated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Rule {
+    /// Adam.
+    Adam,
+    /// Adam with one second moment for each row of weights.
+    AdamRows,
+    /// Plain gradient descent.
+    Sgd,
+}
+
 /// Kernel `advance`, replaying taught lessons.
 #[derive(Debug)]
 pub struct Replay {
@@ -129,16 +141,24 @@ pub struct Replay {
 }
 
 impl Replay {
-    /// Learners of docking as shipped: with Adam, or with plain gradient descent.
+    /// Learners of docking as shipped, by one of the rules.
     ///
     /// # Errors
     /// Where the built-in config cannot be read or its teacher fails.
-    pub fn new(size: Size, adam: bool) -> Result<Self, BenchError> {
-        let (name, arm) = if adam { ("transitions-adam", "taught-adam") } else { ("transitions-sgd", "taught-sgd") };
+    pub fn new(size: Size, rule: Rule) -> Result<Self, BenchError> {
+        let (name, arm, optimiser) = match rule {
+            Rule::Adam => ("transitions-adam", "taught-adam", "adam"),
+            Rule::AdamRows => ("transitions-adam-rows", "taught-adam", "adam-rows"),
+            Rule::Sgd => ("transitions-sgd", "taught-sgd", "sgd"),
+        };
+        let optimiser = format!("arm.{arm}.learning.optimiser=\"{optimiser}\"");
         let arms = format!("arms=[\"{arm}\"]");
         let passes = format!("arm.{arm}.learning.taught_passes={}", size.passes);
-        let plan =
-            workload::plan(DOCKING, &[&arms, &passes, "teacher.episodes=1", "skill.dock.trials=0"], size.learners)?;
+        let plan = workload::plan(
+            DOCKING,
+            &[&arms, &passes, &optimiser, "teacher.episodes=1", "skill.dock.trials=0"],
+            size.learners,
+        )?;
         Ok(Self { name, drill: Drill::new(&plan)?, passes: size.passes })
     }
 }
@@ -149,7 +169,11 @@ impl Task for Replay {
     }
 
     fn about(&self) -> String {
-        let rule = if self.drill.settings(0).optimiser == 1 { "Adam" } else { "gradient descent" };
+        let rule = match self.drill.settings(0).optimiser {
+            OPTIMISER_SGD => "gradient descent",
+            OPTIMISER_ADAM_ROWS => "Adam with one second moment a row",
+            _ => "Adam",
+        };
         let skill = self.drill.skill();
         format!(
             "one replayed transition: {} nets of {}-32-1 forwards, one backwards, {rule}; {} learners",
@@ -160,8 +184,8 @@ impl Task for Replay {
     }
 
     fn cost(&self) -> Option<(Cost, Limit, Option<Limit>)> {
-        let adam = self.drill.settings(0).optimiser == 1;
-        Some((cost::transition(self.drill.skill(), adam), Limit::MultiplyAdd, Some(Limit::FarUpdate)))
+        let optimiser = self.drill.settings(0).optimiser;
+        Some((cost::transition(self.drill.skill(), optimiser), Limit::MultiplyAdd, Some(Limit::FarUpdate)))
     }
 
     fn run(&self, executor: &mut Executor, _sample: u32) -> Result<Option<Done>, BenchError> {
