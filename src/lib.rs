@@ -66,6 +66,7 @@
 //! | run folders | [`record`] |
 //! | arms x points x seeds -> cohorts -> results | [`experiment`] |
 //! | statistics, figures, the page | [`report`], which reads run folders only |
+//! | rates beside the machine's limits | [`bench`] |
 //! | commands | [`cli`] |
 //!
 //! Tests enforce the twins and the direction.
@@ -86,6 +87,7 @@
 //!   one implementation serves every backend.
 pub mod advance;
 pub mod backend;
+pub mod bench;
 pub mod cli;
 pub mod config;
 pub mod evaluate;

@@ -1,6 +1,7 @@
 //! What the user is told when a command fails, and the exit code.
 
 use crate::backend::BackendError;
+use crate::bench::BenchError;
 use crate::config::ConfigError;
 use crate::experiment::group::SetupError;
 use crate::experiment::run::RunError;
@@ -49,6 +50,9 @@ pub enum Failure {
     /// A run was told to stop.
     #[error("{0}")]
     Stopped(String),
+    /// A benchmark cannot be run, or its executors disagree.
+    #[error(transparent)]
+    Bench(BenchError),
     /// A report cannot be made.
     #[error(transparent)]
     Report(#[from] ReportError),
@@ -65,7 +69,8 @@ impl Failure {
             | Self::Parity { .. }
             | Self::Backend(_)
             | Self::Record(_)
-            | Self::Report(_) => 1,
+            | Self::Report(_)
+            | Self::Bench(_) => 1,
         }
     }
 }
@@ -76,6 +81,15 @@ impl From<RunError> for Failure {
             RunError::Record(error) => Self::Record(error),
             RunError::Backend(error) => Self::Backend(error),
             RunError::Stopped { .. } => Self::Stopped(error.to_string()),
+        }
+    }
+}
+
+impl From<BenchError> for Failure {
+    fn from(error: BenchError) -> Self {
+        match error {
+            BenchError::Backend(error) => Self::Backend(error),
+            other => Self::Bench(other),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The command line: one file per command.
 
 mod backend;
+mod bench;
 mod devices;
 mod failure;
 mod output;
@@ -45,6 +46,7 @@ enum Command {
     Report(report::Arguments),
     Probe(probe::Arguments),
     Devices(devices::Arguments),
+    Bench(bench::Arguments),
 }
 
 /// Carries out what the user typed.
@@ -57,6 +59,7 @@ pub fn run(cli: Cli) -> Result<(), Failure> {
         Command::Report(arguments) => report::report(&arguments),
         Command::Probe(arguments) => probe::probe(&arguments),
         Command::Devices(arguments) => devices::devices(&arguments),
+        Command::Bench(arguments) => bench::bench(&arguments),
     }
 }
 

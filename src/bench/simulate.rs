@@ -1,28 +1,140 @@
-//! The simulator step as one would write it without lanes: one ray, one segment at a time.
+//! Robots under random actions, and the simulator's step as one would write it without lanes: one ray, one
+//! segment at a time.
 //!
-//! The same formulas in the same order as the twins, so that results can be compared as bytes; the loops are
-//! the other way round, and what cannot matter is skipped.
+//! The reference has the same formulas in the same order as the twins, so that results can be compared as bytes; the
+//! loops are the other way round, and what cannot matter is skipped.
 
-use skilltree::learner::layout::{Robot, Segment, WorldPlan};
-use skilltree::math::functions::{exponential, reciprocal, reciprocal_sqrt, sin_cos, square_root, wrap_degrees};
-use skilltree::math::rng::{Purpose, Stream, draw, noise};
-use skilltree::robot::collide::{BUMPER_GAP, RADIUS};
-use skilltree::robot::motion::{BACKWARD, COLLISION, DOCKED, FORWARD, turn_of};
-use skilltree::robot::sonar::{SONAR_LIMIT, reading};
-use skilltree::skill::observe::{DICE_ACTUATOR, DICE_COMPASS};
+use super::BenchError;
+use crate::backend::Backend;
+use crate::config::plan::Plan;
+use crate::experiment::senses::{floor_only, robot_at};
+use crate::learner::layout::{Robot, Segment, WorldPlan};
+use crate::learner::memory::Shared;
+use crate::math::functions::{exponential, reciprocal, reciprocal_sqrt, sin_cos, square_root, wrap_degrees};
+use crate::math::rng::{Purpose, Stream, below, draw, noise, philox};
+use crate::robot::collide::{BUMPER_GAP, RADIUS};
+use crate::robot::motion::{BACKWARD, COLLISION, DOCKED, FORWARD, turn_of};
+use crate::robot::sonar::{SONAR_LIMIT, reading};
+use crate::skill::observe::{DICE_ACTUATOR, DICE_COMPASS};
+use crate::world::Pose;
+use glam::Vec2;
 
-/// The farthest that contact is looked for, inches.
-const FAR: f32 = 1.0e6;
+/// Robots all over a floor, each under its own random actions.
+#[derive(Debug, Clone)]
+pub struct Walk {
+    /// The floor and its segment lists.
+    pub shared: Shared,
+    /// The robots, before their next action.
+    pub robots: Vec<Robot>,
+    /// Actions carried out so far.
+    pub walked: u32,
+}
 
-/// One robot carries out its action and senses.
-pub(crate) fn step(robot: &mut Robot, world: &WorldPlan, atlas: &[u32]) {
-    let stream = Stream {
+impl Walk {
+    /// `count` robots in free space of the plan's world, with the noise of its first arm.
+    pub fn new(plan: &Plan, count: u32) -> Self {
+        let (world, noise) = (plan.world(), &plan.arms[0].noise);
+        let part = |word: u32| (word >> 8) as f32 / 16_777_216.0;
+        let poses = (0..u32::MAX).map(|number| philox([number, 0, 0, 0], [1, 1])).map(|words| Pose {
+            x: part(words[0]) * world.size.x,
+            y: part(words[1]) * world.size.y,
+            heading: part(words[2]) * 360.0,
+        });
+        let free = poses.filter(|pose| world.is_free(Vec2::new(pose.x, pose.y)));
+        let robots = (0..count).zip(free).map(|(number, pose)| robot_at(pose, noise, plan.run_seed, number)).collect();
+        Self { shared: floor_only(world), robots, walked: 0 }
+    }
+
+    /// Code of the action of robot `number` at step `step`: any of the six.
+    pub fn action(number: u32, step: u32) -> u32 {
+        below(philox([number, step, 0, 0], [2, 2])[0], 6)
+    }
+
+    /// Every robot carries out `rounds` actions, each of them `times` times, on a backend.
+    ///
+    /// # Errors
+    /// Where the backend fails.
+    pub fn advance(&mut self, backend: &mut dyn Backend, rounds: u32, times: u32) -> Result<(), BenchError> {
+        for round in self.walked..self.walked + rounds {
+            for (number, robot) in (0..).zip(&mut self.robots) {
+                (robot.action, robot.events) = (Self::action(number, round), 0);
+            }
+            backend.step(&self.shared, &mut self.robots, times)?;
+        }
+        self.walked += rounds;
+        Ok(())
+    }
+
+    /// The same by the scalar reference.
+    pub fn advance_scalar(&mut self, rounds: u32, times: u32) {
+        for round in self.walked..self.walked + rounds {
+            for (number, robot) in (0..).zip(&mut self.robots) {
+                robot.action = Self::action(number, round);
+                for _time in 0..times {
+                    step(robot, &self.shared.floor.plan, &self.shared.atlas);
+                }
+            }
+        }
+        self.walked += rounds;
+    }
+
+    /// All that the robots hold, word by word.
+    pub fn words(&self) -> &[u32] {
+        bytemuck::cast_slice(&self.robots)
+    }
+}
+
+/// The noise of a robot's next step, as the reference and the twins draw it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StepNoise {
+    /// Factor on the length of the turn or travel.
+    pub slip: f32,
+    /// Factor on the range of each ray.
+    pub sonar: [f32; 24],
+    /// Factor on the brightness on each bearing.
+    pub light: [f32; 24],
+    /// Degrees added to the compass.
+    pub compass: f32,
+}
+
+impl StepNoise {
+    /// The noise of the step that `robot` takes next.
+    pub fn next(robot: &Robot) -> Self {
+        let stream = stream_of(robot);
+        let term = |words: [u32; 2]| noise(robot.noise_kind, words[0], words[1]);
+        let first = |number: usize| {
+            let [x, y, ..] = draw(stream, number as u32);
+            term([x, y])
+        };
+        let second = |number: usize| {
+            let [.., z, w] = draw(stream, number as u32);
+            term([z, w])
+        };
+        Self {
+            slip: robot.noise_actuator * first(DICE_ACTUATOR) + 1.0,
+            sonar: std::array::from_fn(|ray| robot.noise_sonar * first(ray) + 1.0),
+            light: std::array::from_fn(|ray| robot.noise_light * second(ray) + 1.0),
+            compass: robot.noise_compass * first(DICE_COMPASS),
+        }
+    }
+}
+
+fn stream_of(robot: &Robot) -> Stream {
+    Stream {
         key: [robot.run_seed, robot.robot_seed],
         skill: 0,
         trial: 0,
         step: robot.step,
         purpose: Purpose::Given as u32,
-    };
+    }
+}
+
+/// The farthest that contact is looked for, inches.
+const FAR: f32 = 1.0e6;
+
+/// One robot carries out its action and senses.
+pub fn step(robot: &mut Robot, world: &WorldPlan, atlas: &[u32]) {
+    let stream = stream_of(robot);
     let slip_words = draw(stream, DICE_ACTUATOR as u32);
     let slip = robot.noise_actuator * noise(robot.noise_kind, slip_words[0], slip_words[1]) + 1.0;
     act(robot, world, slip);

@@ -1,0 +1,143 @@
+//! Time, and what is told of several measurements of it.
+
+use super::BenchError;
+use serde::{Deserialize, Serialize};
+use std::time::Instant;
+
+/// How long something took.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Span {
+    /// Seconds on the wall.
+    pub wall: f64,
+    /// CPU-seconds of all threads of this process; seconds on the wall where the system does not tell.
+    pub cpu: f64,
+}
+
+/// Calls and times.
+///
+/// # Errors
+/// Those of the call.
+pub fn timed<T>(call: impl FnOnce() -> Result<T, BenchError>) -> Result<(T, Span), BenchError> {
+    let (before, begun) = (cpu_seconds(), Instant::now());
+    let value = call()?;
+    let wall = begun.elapsed().as_secs_f64().max(1.0e-9);
+    let cpu = match (before, cpu_seconds()) {
+        (Some(before), Some(after)) => (after - before).max(1.0e-9),
+        _ => wall,
+    };
+    Ok((value, Span { wall, cpu }))
+}
+
+/// CPU time of all threads of this process, ended ones included.
+#[cfg(unix)]
+fn cpu_seconds() -> Option<f64> {
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+    Some(time.tv_sec as f64 + time.tv_nsec as f64 * 1.0e-9)
+}
+
+/// No clock of this kind in Rust's reach.
+#[cfg(not(unix))]
+fn cpu_seconds() -> Option<f64> {
+    None
+}
+
+/// Some measurements of one thing.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Spread {
+    /// Half of them are below.
+    pub median: f64,
+    /// A quarter of them are below.
+    pub low: f64,
+    /// A quarter of them are above.
+    pub high: f64,
+}
+
+impl Spread {
+    /// Median and quartiles, interpolated between measurements; none of nothing.
+    pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
+        let mut values: Vec<f64> = values.into_iter().collect();
+        values.sort_by(f64::total_cmp);
+        let last = values.len().checked_sub(1)?;
+        let at = |share: f64| {
+            let place = share * last as f64;
+            let (below, part) = (place.floor() as usize, place.fract());
+            values[below] + part * (values[last.min(below + 1)] - values[below])
+        };
+        Some(Self { median: at(0.5), low: at(0.25), high: at(0.75) })
+    }
+}
+
+/// Turns of the control loop.
+const TURNS: u32 = 4_000_000;
+
+/// How many of `threads` cores were free: the work of a loop that needs nothing but a core, done by all threads at
+/// once, over that of one thread in the same time.
+pub fn free_cores(threads: usize) -> f64 {
+    let all = || {
+        let begun = Instant::now();
+        std::thread::scope(|scope| {
+            for _thread in 0..threads {
+                scope.spawn(spin);
+            }
+        });
+        begun.elapsed().as_secs_f64()
+    };
+    // The least of three: what disturbs one thread says nothing about the cores.
+    let alone = (0..3).map(|_| {
+        let begun = Instant::now();
+        spin();
+        begun.elapsed().as_secs_f64()
+    });
+    let alone = alone.fold(f64::INFINITY, f64::min);
+    threads as f64 * alone / all().max(1.0e-9)
+}
+
+/// A chain of dependent multiplications.
+fn spin() {
+    let mut state = std::hint::black_box(1_u32);
+    for _turn in 0..TURNS {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+    }
+    std::hint::black_box(state);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quartiles_are_interpolated() {
+        let spread = Spread::of([4.0, 1.0, 3.0, 2.0]).expect("some");
+        assert_eq!((spread.low, spread.median, spread.high), (1.75, 2.5, 3.25));
+        assert_eq!(Spread::of([7.0]), Some(Spread { median: 7.0, low: 7.0, high: 7.0 }));
+        assert_eq!(Spread::of([]), None);
+    }
+
+    #[test]
+    fn cpu_time_counts_all_threads_and_no_sleep() {
+        let (_, asleep) = timed(|| {
+            std::thread::sleep(std::time::Duration::from_millis(50));
+            Ok(())
+        })
+        .expect("slept");
+        assert!(asleep.wall >= 0.05);
+        let (_, busy) = timed(|| {
+            std::thread::scope(|scope| {
+                for _thread in 0..4 {
+                    scope.spawn(spin);
+                }
+            });
+            Ok(())
+        })
+        .expect("spun");
+        let (_, one) = timed(|| {
+            spin();
+            Ok(())
+        })
+        .expect("spun");
+        if cfg!(unix) {
+            assert!(asleep.cpu < 0.5 * asleep.wall, "{asleep:?}");
+            assert!(busy.cpu > 2.0 * one.cpu, "{busy:?} {one:?}");
+        }
+    }
+}

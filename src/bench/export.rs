@@ -1,0 +1,107 @@
+//! The benchmarks' inputs and results for programs in other languages: the same work, to be done and checked there.
+//!
+//! [`export`] writes three files into a folder. `simulate.safetensors` holds robots, a floor, the action of every
+//! robot at every step, the noise of every step, and what our robots read after each step. `replay.safetensors` holds
+//! taught lessons, the initial nets of learners, their hyper-parameters, and our weights after one pass over the
+//! lessons and after all of them. `README.md` names every tensor with its shape, type, unit and meaning, and states
+//! the formulas; it is made from the same table as the files.
+//!
+//! Numbers that are no tensors stand in both files' metadata as JSON under the key `skilltree`.
+
+mod replay;
+mod simulate;
+
+use super::BenchError;
+use crate::record::atomic;
+use crate::record::disk::FileSystem;
+use safetensors::tensor::{Dtype, TensorView};
+use serde_json::{Map, Value};
+use std::collections::HashMap;
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// Robots of `simulate.safetensors`.
+pub const ROBOTS: u32 = 4096;
+/// Steps of each.
+pub const STEPS: u32 = 16;
+/// Learners of `replay.safetensors`, unless told otherwise.
+pub const LEARNERS: u32 = 256;
+/// Passes over each learner's lessons.
+pub const PASSES: u32 = 30;
+
+/// Name, unit and meaning of a tensor.
+type Words = (&'static str, &'static str, &'static str);
+
+/// One tensor with its line in the README.
+struct Tensor {
+    name: &'static str,
+    dtype: Dtype,
+    shape: Vec<usize>,
+    unit: &'static str,
+    meaning: &'static str,
+    bytes: Vec<u8>,
+}
+
+impl Tensor {
+    fn of<T: bytemuck::Pod>((name, unit, meaning): Words, dtype: Dtype, shape: &[usize], values: &[T]) -> Self {
+        Self { name, dtype, shape: shape.to_vec(), unit, meaning, bytes: bytemuck::cast_slice(values).to_vec() }
+    }
+
+    fn floats(words: Words, shape: &[usize], values: &[f32]) -> Self {
+        Self::of(words, Dtype::F32, shape, values)
+    }
+
+    fn codes(words: Words, shape: &[usize], values: &[i32]) -> Self {
+        Self::of(words, Dtype::I32, shape, values)
+    }
+}
+
+/// Writes the files into `folder`, which is made if it is not there.
+///
+/// # Errors
+/// Where a file cannot be written, or the CPU backend leaves other bytes than the scalar reference.
+pub fn export(folder: &Path, learners: u32) -> Result<(), BenchError> {
+    let failed = |source| BenchError::File { path: folder.to_owned(), source };
+    std::fs::create_dir_all(folder).map_err(failed)?;
+    let (walk, numbers) = simulate::simulate()?;
+    write(&folder.join("simulate.safetensors"), &walk, &numbers)?;
+    let (replay, settings) = replay::replay(learners)?;
+    write(&folder.join("replay.safetensors"), &replay, &settings)?;
+    let readme = include_str!("export/README.md")
+        .replace("{simulate}", &table(&walk, &numbers))
+        .replace("{replay}", &table(&replay, &settings));
+    Ok(atomic::write(&FileSystem, &folder.join("README.md"), readme.as_bytes())?)
+}
+
+fn object(value: Value) -> Map<String, Value> {
+    match value {
+        Value::Object(map) => map,
+        _ => Map::new(),
+    }
+}
+
+/// Writes one file. The metadata has one entry: with several, their order would change from run to run.
+fn write(path: &Path, tensors: &[Tensor], numbers: &Map<String, Value>) -> Result<(), BenchError> {
+    let failed = |message: String| BenchError::Tensors { path: path.to_owned(), message };
+    let mut views = Vec::with_capacity(tensors.len());
+    for tensor in tensors {
+        let view = TensorView::new(tensor.dtype, tensor.shape.clone(), &tensor.bytes);
+        views.push((tensor.name, view.map_err(|error| failed(format!("`{}`: {error}", tensor.name)))?));
+    }
+    let metadata = HashMap::from([("skilltree".to_owned(), Value::Object(numbers.clone()).to_string())]);
+    let bytes = safetensors::serialize(views, Some(metadata)).map_err(|error| failed(error.to_string()))?;
+    Ok(atomic::write(&FileSystem, path, &bytes)?)
+}
+
+/// The tensors and numbers of a file, for the README.
+fn table(tensors: &[Tensor], numbers: &Map<String, Value>) -> String {
+    let mut text = String::from("| tensor | shape | type | unit | meaning |\n|---|---|---|---|---|\n");
+    for Tensor { name, dtype, shape, unit, meaning, .. } in tensors {
+        let _ = writeln!(text, "| `{name}` | {shape:?} | {dtype:?} | {unit} | {meaning} |");
+    }
+    text.push_str("\nMetadata, JSON under the key `skilltree`:\n\n");
+    for (name, value) in numbers {
+        let _ = writeln!(text, "- `{name}` = {value}");
+    }
+    text
+}

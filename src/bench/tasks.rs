@@ -1,0 +1,338 @@
+//! The kinds of work, each done from the same start by every executor, and what it leaves to be compared.
+
+use super::BenchError;
+use super::clock::{Span, timed};
+use super::cost::{self, Cost};
+use super::executor::{Executor, Kind};
+use super::limits::Limit;
+use super::replay::{Drill, Nets};
+use super::simulate::Walk;
+use super::workload::{self, DOCKING, HIERARCHY};
+use crate::backend::{Cohort, Test};
+use crate::config::plan::Plan;
+use crate::experiment::group::{Group, LearnerId, groups};
+use crate::experiment::train::train;
+use crate::qnet::backward::{OPTIMISER_ADAM_ROWS, OPTIMISER_SGD};
+
+/// A piece of work done once.
+#[derive(Debug)]
+pub struct Done {
+    /// How many units.
+    pub units: u64,
+    /// How long it took.
+    pub span: Span,
+    /// What must be the same whoever did it.
+    pub words: Vec<u32>,
+}
+
+/// A kind of work.
+pub trait Task {
+    /// One word or two, as results name it.
+    fn name(&self) -> &'static str;
+    /// What a unit is.
+    fn about(&self) -> String;
+    /// What a unit costs, and the limits that it is held against: arithmetic, and the way to the nets.
+    fn cost(&self) -> Option<(Cost, Limit, Option<Limit>)>;
+    /// Does the work of one sample; none where this executor cannot, or would take too long.
+    ///
+    /// # Errors
+    /// Where the executor fails.
+    fn run(&self, executor: &mut Executor, sample: u32) -> Result<Option<Done>, BenchError>;
+}
+
+/// How much of everything.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Size {
+    /// Robots under random actions.
+    pub robots: u32,
+    /// Actions of each.
+    pub rounds: u32,
+    /// Learners that replay, or are tested.
+    pub learners: u32,
+    /// Passes over their ten lessons.
+    pub passes: u32,
+    /// Test trials of each.
+    pub episodes: u32,
+}
+
+impl Size {
+    /// Enough for cores, and not too much for a scalar reference and for software adapters.
+    pub const HOST: Self = Self { robots: 4096, rounds: 24, learners: 64, passes: 4, episodes: 1 };
+    /// Enough to fill a graphics card.
+    pub const DEVICE: Self = Self { robots: 65_536, rounds: 8, learners: 4096, passes: 2, episodes: 2 };
+    /// Only to see that everything works.
+    pub const TINY: Self = Self { robots: 64, rounds: 2, learners: 2, passes: 1, episodes: 1 };
+}
+
+/// Kernel `step`.
+#[derive(Debug)]
+pub struct RobotSteps {
+    walk: Walk,
+    rounds: u32,
+    times: u32,
+}
+
+impl RobotSteps {
+    /// Robots that carry out each given action `times` times before the next is given.
+    ///
+    /// # Errors
+    /// Where the built-in config cannot be read.
+    pub fn new(size: Size, times: u32) -> Result<Self, BenchError> {
+        let plan = workload::plan(DOCKING, &["arms=[\"taught-adam\"]"], 1)?;
+        Ok(Self { walk: Walk::new(&plan, size.robots), rounds: size.rounds.div_ceil(times), times })
+    }
+}
+
+impl Task for RobotSteps {
+    fn name(&self) -> &'static str {
+        if self.times == 1 { "robot-steps" } else { "robot-steps-held" }
+    }
+
+    fn about(&self) -> String {
+        let held = match self.times {
+            1 => "each action given by the host".to_owned(),
+            times => format!("each action carried out {times} times"),
+        };
+        format!(
+            "one action of a robot: noise, contact, 24 ranges, light, compass; {} robots, {held}",
+            self.walk.robots.len()
+        )
+    }
+
+    fn cost(&self) -> Option<(Cost, Limit, Option<Limit>)> {
+        let Walk { shared, robots, .. } = &self.walk;
+        let world = &shared.floor.plan;
+        let list = cost::mean_list(world, &shared.atlas, robots.iter().map(|robot| (robot.x, robot.y)));
+        Some((cost::step(world, list, 1.0 / 3.0), Limit::CompareSelect, None))
+    }
+
+    fn run(&self, executor: &mut Executor, sample: u32) -> Result<Option<Done>, BenchError> {
+        let mut walk = self.walk.clone();
+        walk.walked = sample * self.rounds;
+        let (_, span) = timed(|| match executor.backend() {
+            Some(backend) => walk.advance(backend, self.rounds, self.times),
+            None => {
+                walk.advance_scalar(self.rounds, self.times);
+                Ok(())
+            }
+        })?;
+        let units = walk.robots.len() as u64 * u64::from(self.rounds * self.times);
+        Ok(Some(Done { units, span, words: walk.words().to_vec() }))
+    }
+}
+
+/// How weights are updated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Rule {
+    /// Adam.
+    Adam,
+    /// Adam with one second moment for each row of weights.
+    AdamRows,
+    /// Plain gradient descent.
+    Sgd,
+}
+
+/// Kernel `advance`, replaying taught lessons.
+#[derive(Debug)]
+pub struct Replay {
+    name: &'static str,
+    drill: Drill,
+    passes: u32,
+}
+
+impl Replay {
+    /// Learners of docking as shipped, by one of the rules.
+    ///
+    /// # Errors
+    /// Where the built-in config cannot be read or its teacher fails.
+    pub fn new(size: Size, rule: Rule) -> Result<Self, BenchError> {
+        let (name, arm, optimiser) = match rule {
+            Rule::Adam => ("transitions-adam", "taught-adam", "adam"),
+            Rule::AdamRows => ("transitions-adam-rows", "taught-adam", "adam-rows"),
+            Rule::Sgd => ("transitions-sgd", "taught-sgd", "sgd"),
+        };
+        let optimiser = format!("arm.{arm}.learning.optimiser=\"{optimiser}\"");
+        let arms = format!("arms=[\"{arm}\"]");
+        let passes = format!("arm.{arm}.learning.taught_passes={}", size.passes);
+        let plan = workload::plan(
+            DOCKING,
+            &[&arms, &passes, &optimiser, "teacher.episodes=1", "skill.dock.trials=0"],
+            size.learners,
+        )?;
+        Ok(Self { name, drill: Drill::new(&plan)?, passes: size.passes })
+    }
+}
+
+impl Task for Replay {
+    fn name(&self) -> &'static str {
+        self.name
+    }
+
+    fn about(&self) -> String {
+        let rule = match self.drill.settings(0).optimiser {
+            OPTIMISER_SGD => "gradient descent",
+            OPTIMISER_ADAM_ROWS => "Adam with one second moment a row",
+            _ => "Adam",
+        };
+        let skill = self.drill.skill();
+        format!(
+            "one replayed transition: {} nets of {}-32-1 forwards, one backwards, {rule}; {} learners",
+            skill.nets,
+            skill.inputs,
+            self.drill.cohort().cursors.len()
+        )
+    }
+
+    fn cost(&self) -> Option<(Cost, Limit, Option<Limit>)> {
+        let optimiser = self.drill.settings(0).optimiser;
+        Some((cost::transition(self.drill.skill(), optimiser), Limit::MultiplyAdd, Some(Limit::FarUpdate)))
+    }
+
+    fn run(&self, executor: &mut Executor, _sample: u32) -> Result<Option<Done>, BenchError> {
+        let mut nets = Vec::new();
+        let span = match executor.backend() {
+            Some(backend) => {
+                backend.load(self.drill.cohort().clone())?;
+                let (_, span) = timed(|| Drill::replay(backend))?;
+                nets.extend(self.drill.nets(backend.memory()?));
+                span
+            }
+            None => {
+                nets.extend(self.drill.nets(self.drill.cohort()));
+                let replay = || {
+                    self.drill.replay_scalar(&mut nets, self.passes);
+                    Ok(())
+                };
+                timed(replay)?.1
+            }
+        };
+        let words = nets.iter().flat_map(Nets::weights).map(f32::to_bits).collect();
+        Ok(Some(Done { units: self.drill.transitions(self.passes), span, words }))
+    }
+}
+
+/// The paper's hierarchy: four skills and one above them.
+#[derive(Debug)]
+pub struct Hierarchy {
+    plan: Plan,
+    group: Group,
+}
+
+impl Hierarchy {
+    /// The arm `hierarchical`, with as many seeds as `learners`.
+    ///
+    /// # Errors
+    /// Where the built-in config cannot be read or its teacher fails.
+    pub fn new(learners: u32) -> Result<Self, BenchError> {
+        let plan = workload::plan(HIERARCHY, &["arms=[\"hierarchical\"]", "teacher.episodes=1"], learners)?;
+        let group = groups(&plan)?.swap_remove(0);
+        Ok(Self { plan, group })
+    }
+
+    fn ids(&self, learners: u32) -> Vec<LearnerId> {
+        self.group.learners(&self.plan).into_iter().take(learners as usize).collect()
+    }
+}
+
+/// Kernel `evaluate`: the tree decides on every step, with the nets as they begin.
+#[derive(Debug)]
+pub struct Decisions<'a> {
+    hierarchy: &'a Hierarchy,
+    cohort: Cohort,
+    episodes: u32,
+}
+
+impl<'a> Decisions<'a> {
+    /// Test trials of learners that have not learned yet.
+    pub fn new(hierarchy: &'a Hierarchy, size: Size) -> Self {
+        let mut cohort = hierarchy.group.cohort(&hierarchy.plan, &hierarchy.ids(size.learners));
+        // Tests read nets only.
+        (cohort.lessons_stride, cohort.rows_stride) = (1, 1);
+        cohort.lessons = vec![0; cohort.cursors.len()];
+        cohort.rows = vec![0; cohort.cursors.len()];
+        Self { hierarchy, cohort, episodes: size.episodes }
+    }
+}
+
+impl Task for Decisions<'_> {
+    fn name(&self) -> &'static str {
+        "decisions"
+    }
+
+    fn about(&self) -> String {
+        format!(
+            "one step of a robot whose tree of {} skills decides: sense, watch, choose, act; {} learners x {} trials",
+            self.cohort.skills,
+            self.cohort.cursors.len(),
+            self.episodes
+        )
+    }
+
+    fn cost(&self) -> Option<(Cost, Limit, Option<Limit>)> {
+        let shared = &self.cohort.shared;
+        let size = self.hierarchy.plan.world().size;
+        let cells = (0..).map(|row| row as f32 * 12.0 + 6.0).take_while(|y| *y < size.y);
+        let places = cells
+            .flat_map(|y| (0..).map(move |column| (column as f32 * 12.0 + 6.0, y)).take_while(|(x, _)| *x < size.x));
+        let list = cost::mean_list(&shared.floor.plan, &shared.atlas, places);
+        let cost = cost::decision(&shared.floor.plan, list, &shared.skills, self.cohort.skills - 1);
+        Some((cost, Limit::MultiplyAdd, Some(Limit::FarRead)))
+    }
+
+    fn run(&self, executor: &mut Executor, sample: u32) -> Result<Option<Done>, BenchError> {
+        let Some(backend) = executor.backend() else { return Ok(None) };
+        backend.load(self.cohort.clone())?;
+        let skill = self.cohort.skills as u32 - 1;
+        let test = Test { skill, number: sample, episodes: self.episodes };
+        let (episodes, span) = timed(|| Ok(backend.evaluate(test)?))?;
+        let units = episodes.iter().map(|episode| u64::from(episode.agent.step)).sum();
+        Ok(Some(Done { units, span, words: bytemuck::cast_slice(&episodes).to_vec() }))
+    }
+}
+
+/// A whole training of the hierarchy, tests and all.
+#[derive(Debug)]
+pub struct Learners<'a> {
+    hierarchy: &'a Hierarchy,
+    host: u32,
+    device: u32,
+}
+
+impl<'a> Learners<'a> {
+    /// `host` learners on the CPU, `device` on a graphics card; software adapters would take too long.
+    pub fn new(hierarchy: &'a Hierarchy, host: u32, device: u32) -> Self {
+        Self { hierarchy, host, device }
+    }
+}
+
+impl Task for Learners<'_> {
+    fn name(&self) -> &'static str {
+        "learners"
+    }
+
+    fn about(&self) -> String {
+        let skills = &self.hierarchy.plan.arms[0].skills;
+        let trials: u32 = skills.iter().map(|skill| skill.trials).sum();
+        format!("one learner from its first lesson to its last test: {} skills, {trials} trials", skills.len())
+    }
+
+    fn cost(&self) -> Option<(Cost, Limit, Option<Limit>)> {
+        None
+    }
+
+    fn run(&self, executor: &mut Executor, _sample: u32) -> Result<Option<Done>, BenchError> {
+        let count = match executor.about.kind {
+            Kind::Cpu => self.host,
+            Kind::Gpu => self.device,
+            Kind::Scalar | Kind::SoftwareGpu => return Ok(None),
+        };
+        let Some(backend) = executor.backend() else { return Ok(None) };
+        let Hierarchy { plan, group } = self.hierarchy;
+        let ids = self.hierarchy.ids(count);
+        let (results, span) = timed(|| Ok(train(plan, group, &ids, &|_| None, None, backend, &mut ())?))?;
+        // A card trains more of them, of which the first are also trained on the CPU.
+        let common = if self.device == 0 { self.host } else { self.host.min(self.device) } as usize;
+        let weights = results.iter().take(common).flat_map(|result| &result.weights);
+        Ok(Some(Done { units: results.len() as u64, span, words: weights.map(|weight| weight.to_bits()).collect() }))
+    }
+}

@@ -1,0 +1,35 @@
+//! The experiments that benchmarks are cut from: the shipped configs, built in, so that the command works anywhere.
+
+use super::BenchError;
+use crate::config::plan::Plan;
+use crate::config::{Overrides, load};
+use std::fs;
+use std::path::Path;
+
+/// The shipped files that benchmarks need.
+const FILES: [(&str, &str); 3] = [
+    (DOCKING, include_str!("../../configs/docking.toml")),
+    (HIERARCHY, include_str!("../../configs/lin1993.toml")),
+    ("worlds/office.toml", include_str!("../../configs/worlds/office.toml")),
+];
+
+/// Docking by itself: the smallest experiment.
+pub const DOCKING: &str = "docking.toml";
+/// The whole paper.
+pub const HIERARCHY: &str = "lin1993.toml";
+
+/// A shipped config with some keys set, and seeds from 0 to below `seeds`.
+///
+/// # Errors
+/// Where the temporary folder cannot be written, or a key has no such value.
+pub fn plan(config: &str, set: &[&str], seeds: u32) -> Result<Plan, BenchError> {
+    let failed = |path: &Path, source| BenchError::File { path: path.to_owned(), source };
+    let folder = tempfile::tempdir().map_err(|source| failed(&std::env::temp_dir(), source))?;
+    for (name, text) in FILES {
+        let path = folder.path().join(name);
+        let parent = path.parent().unwrap_or(folder.path());
+        fs::create_dir_all(parent).and_then(|()| fs::write(&path, text)).map_err(|source| failed(&path, source))?;
+    }
+    let set = set.iter().map(|text| (*text).to_owned()).collect();
+    Ok(load(&folder.path().join(config), &Overrides { set, seeds: Some(format!("0..{seeds}")), ..Overrides::default() })?)
+}

@@ -1,0 +1,92 @@
+//! `skilltree bench`: how fast, and how near to this machine's limits.
+
+use super::output::{print, tell};
+use super::{Failure, exit_codes};
+use crate::bench::executor::Choice;
+use crate::bench::export::{self, export};
+use crate::bench::run::{Options, run};
+use crate::bench::scaling::{COUNTS, scaling};
+use crate::bench::{archive, scaling as scales, text};
+use clap::ValueEnum;
+use std::path::{Path, PathBuf};
+
+/// Who is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Where {
+    /// The scalar reference, and the CPU on one thread and on all.
+    Cpu,
+    /// Every exact adapter, and the CPU on one thread.
+    Gpu,
+    /// Everybody.
+    All,
+}
+
+/// Measures robot-steps, decisions, replayed transitions and whole learners on every backend, beside the limits of this
+/// machine. Whatever two of them do must leave the same bytes, or nothing is told.
+#[derive(Debug, clap::Args)]
+#[command(after_help = concat!(
+    "Examples:\n",
+    "  skilltree bench --backend cpu --learners 0\n",
+    "  skilltree bench --json > bench.json\n",
+    "  skilltree bench --record\n",
+    "  skilltree bench --scaling\n",
+    "  skilltree bench --export peers\n\n",
+    "Whole learners take the most time: `--learners 0` leaves them out.\n\n",
+    exit_codes!()
+))]
+pub(super) struct Arguments {
+    /// Who is measured.
+    #[arg(long, value_enum, default_value = "all", value_name = "WHERE")]
+    backend: Where,
+    /// Samples of everything, taken in turn; medians and quartiles are told.
+    #[arg(long, default_value_t = 7, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    samples: u32,
+    /// Whole learners to train in each sample, 0 for none; one per core, and 1024 on a graphics card, if not given.
+    /// With --export, the learners whose replay is exported.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=65_536))]
+    learners: Option<u32>,
+    /// One JSON object instead of text.
+    #[arg(long)]
+    json: bool,
+    /// Keeps the result as benches/runs/DATE-MACHINE.json too.
+    #[arg(long)]
+    record: bool,
+    /// Measures what a learner costs among 64, 256, ... 16384 learners on the CPU, and nothing else. Takes some 3 GB.
+    #[arg(long, conflicts_with_all = ["export", "record", "backend", "learners"])]
+    scaling: bool,
+    /// Writes inputs and expected results for programs in other languages, and measures nothing.
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["record", "json", "backend", "samples"])]
+    export: Option<PathBuf>,
+}
+
+/// Runs the benchmark.
+///
+/// # Errors
+/// Where results differ or something cannot be had.
+pub(super) fn bench(arguments: &Arguments) -> Result<(), Failure> {
+    let command = std::env::args().collect::<Vec<_>>().join(" ");
+    let note = &mut |text: &str| tell(text);
+    if let Some(folder) = &arguments.export {
+        let learners = arguments.learners.unwrap_or(export::LEARNERS).max(1);
+        export(folder, learners)?;
+        tell(&format!("written: {}", folder.display()));
+        return Ok(());
+    }
+    if arguments.scaling {
+        let found = scaling(&COUNTS, arguments.samples, &command, note)?;
+        let json = || serde_json::to_string_pretty(&found).unwrap_or_default() + "\n";
+        return print(&if arguments.json { json() } else { scales::text(&found) });
+    }
+    let choice = match arguments.backend {
+        Where::Cpu => Choice::Cpu,
+        Where::Gpu => Choice::Gpu,
+        Where::All => Choice::All,
+    };
+    let options = Options { choice, samples: arguments.samples, learners: arguments.learners, size: None };
+    let report = run(options, &command, note)?;
+    if arguments.record {
+        let path = archive::keep(&report, Path::new(archive::FOLDER))?;
+        tell(&format!("kept: {}", path.display()));
+    }
+    print(&if arguments.json { archive::json(&report)? } else { text::text(&report) })
+}

@@ -1,0 +1,307 @@
+//! The benchmark tells no figure of wrong results, its shares are shares, and what it exports is what it says.
+
+use safetensors::SafeTensors;
+use serde_json::Value;
+use skilltree::backend::cpu::CpuBackend;
+use skilltree::backend::{Backend, BackendError, Cohort, Stop, Test};
+use skilltree::bench::BenchError;
+use skilltree::bench::executor::{Executor, Kind};
+use skilltree::bench::limits::Meter;
+use skilltree::bench::measure::Measured;
+use skilltree::bench::result::Report;
+use skilltree::bench::tasks::{Decisions, Hierarchy, Replay, RobotSteps, Rule, Size, Task};
+use skilltree::learner::layout::{Cursor, Episode, Robot};
+use skilltree::learner::memory::Shared;
+use std::path::Path;
+use std::process::Command;
+
+/// What a broken backend does wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Fault {
+    None,
+    Robot,
+    Weight,
+    Episode,
+}
+
+/// The CPU backend with one bit wrong in one of its results.
+struct Broken {
+    inner: CpuBackend,
+    fault: Fault,
+    cohort: Option<Cohort>,
+}
+
+fn broken(fault: Fault) -> Executor {
+    let inner = CpuBackend::new(1, None).expect("a thread");
+    Executor::of("broken", Kind::Cpu, 1, Box::new(Broken { inner, fault, cohort: None }))
+}
+
+fn flip(value: &mut f32) {
+    *value = f32::from_bits(value.to_bits() ^ 1);
+}
+
+impl Backend for Broken {
+    fn describe(&self) -> String {
+        "broken".to_owned()
+    }
+    fn kind(&self) -> &'static str {
+        "cpu"
+    }
+    fn adapter(&self) -> Option<String> {
+        None
+    }
+    fn cohort_size(&self, bytes_per_learner: usize) -> usize {
+        self.inner.cohort_size(bytes_per_learner)
+    }
+    fn load(&mut self, cohort: Cohort) -> Result<(), BackendError> {
+        self.inner.load(cohort)
+    }
+    fn advance(&mut self, stop: Stop) -> Result<&[Cursor], BackendError> {
+        self.inner.advance(stop)
+    }
+    fn evaluate(&mut self, test: Test) -> Result<Vec<Episode>, BackendError> {
+        let mut episodes = self.inner.evaluate(test)?;
+        if self.fault == Fault::Episode {
+            flip(&mut episodes[0].agent.x);
+        }
+        Ok(episodes)
+    }
+    fn memory(&mut self) -> Result<&Cohort, BackendError> {
+        let mut cohort = self.inner.memory()?.clone();
+        if self.fault == Fault::Weight {
+            flip(&mut cohort.nets[0]);
+        }
+        Ok(self.cohort.insert(cohort))
+    }
+    fn step(&mut self, shared: &Shared, robots: &mut [Robot], quanta: u32) -> Result<(), BackendError> {
+        self.inner.step(shared, robots, quanta)?;
+        if self.fault == Fault::Robot {
+            flip(&mut robots[17].heading);
+        }
+        Ok(())
+    }
+}
+
+fn measure(task: &dyn Task, first: Executor, fault: Fault) -> Result<Measured, BenchError> {
+    let mut measured = Measured::new();
+    let mut meter = Meter::new()?;
+    measured.add(task, &mut [first, broken(fault)], &mut meter, 1)?;
+    Ok(measured)
+}
+
+/// Work, what is wrong with the second executor's, and the first executor.
+type Case<'a> = (&'a dyn Task, Fault, fn() -> Executor);
+
+#[test]
+fn one_wrong_bit_leaves_no_figure() {
+    let hierarchy = Hierarchy::new(2).expect("the built-in experiment");
+    let cpu = || Executor::of("cpu", Kind::Cpu, 1, Box::new(CpuBackend::new(1, None).expect("a thread")));
+    let (steps, replay) = (RobotSteps::new(Size::TINY, 1), Replay::new(Size::TINY, Rule::Adam));
+    let (steps, replay) = (steps.expect("robots"), replay.expect("learners"));
+    let decisions = Decisions::new(&hierarchy, Size::TINY);
+    let cases: [Case<'_>; 3] = [
+        (&steps, Fault::Robot, Executor::scalar),
+        (&replay, Fault::Weight, Executor::scalar),
+        (&decisions, Fault::Episode, cpu),
+    ];
+    for (task, fault, first) in cases {
+        let sound = measure(task, first(), Fault::None).expect("the same bytes");
+        assert_eq!(sound.tasks[0].rows.len(), 2, "{}", task.name());
+        match measure(task, first(), fault) {
+            Err(BenchError::Differs { work, right, .. }) => assert_eq!((work, right.as_str()), (task.name(), "broken")),
+            other => panic!("{}: {other:?}", task.name()),
+        }
+    }
+}
+
+#[test]
+fn json_has_shares_of_limits_and_the_same_rate_twice() {
+    let words = ["bench", "--backend", "cpu", "--samples", "1", "--learners", "0", "--json"];
+    let output = Command::new(env!("CARGO_BIN_EXE_skilltree")).args(words).output().expect("runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let value: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let report: Report = serde_json::from_value(value.clone()).expect("the documented schema");
+    assert_eq!(serde_json::to_value(&report).expect("JSON"), value);
+    assert_eq!((report.format, report.limits.len()), (1, 8));
+    let names: Vec<&str> = report.tasks.iter().map(|task| task.name.as_str()).collect();
+    let replays = ["transitions-adam", "transitions-adam-rows", "transitions-sgd"];
+    assert_eq!(names, [&["robot-steps", "robot-steps-held"][..], &replays, &["decisions"]].concat());
+    for limit in &report.limits {
+        assert!(limit.rate.median > 1.0e8, "{limit:?}");
+    }
+    for task in &report.tasks {
+        let scalar = task.rows.iter().find(|row| row.executor == "scalar");
+        assert_eq!(scalar.is_some(), task.name != "decisions");
+        let one = task.rows.iter().find(|row| row.executor == "cpu-1").expect("one thread");
+        // On one thread a CPU-second is no shorter than a second.
+        assert!(one.per_cpu_second.median >= 0.95 * one.per_second.median, "{}: {one:?}", task.name);
+        let cost = task.cost.expect("counted");
+        assert!(!one.shares.is_empty(), "{}", task.name);
+        for share in task.rows.iter().flat_map(|row| &row.shares) {
+            assert!(share.share.low > 0.0 && share.share.high < 1.2, "{}: {share:?}", task.name);
+        }
+        if let (Some(scalar), Some(ratio)) = (scalar, &one.over_scalar) {
+            let again = one.per_cpu_second.median / scalar.per_cpu_second.median;
+            assert!((ratio.median / again - 1.0).abs() < 1.0e-6, "{}", task.name);
+            assert!(cost.lane_operations > 1.0e3);
+        }
+    }
+}
+
+fn floats(tensors: &SafeTensors<'_>, name: &str) -> Vec<f64> {
+    let tensor = tensors.tensor(name).unwrap_or_else(|error| panic!("{name}: {error}"));
+    let (words, _) = tensor.data().as_chunks::<4>();
+    match tensor.dtype() {
+        safetensors::Dtype::F32 => words.iter().map(|word| f64::from(f32::from_le_bytes(*word))).collect(),
+        safetensors::Dtype::I32 => words.iter().map(|word| f64::from(i32::from_le_bytes(*word))).collect(),
+        _ => tensor.data().iter().map(|byte| f64::from(*byte)).collect(),
+    }
+}
+
+fn numbers(bytes: &[u8]) -> Value {
+    let (_, header) = SafeTensors::read_metadata(bytes).expect("a header");
+    let entries = header.metadata().as_ref().expect("metadata");
+    serde_json::from_str(&entries["skilltree"]).expect("JSON")
+}
+
+#[test]
+fn exported_work_is_what_the_readme_says() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = Command::new(env!("CARGO_BIN_EXE_skilltree"))
+        .args(["bench", "--learners", "2", "--export"])
+        .arg(folder.path())
+        .output()
+        .expect("runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let readme = std::fs::read_to_string(folder.path().join("README.md")).expect("a README");
+    for file in ["simulate.safetensors", "replay.safetensors"] {
+        let bytes = std::fs::read(folder.path().join(file)).expect("a file");
+        for (name, _) in SafeTensors::deserialize(&bytes).expect("tensors").tensors() {
+            assert!(readme.contains(&format!("| `{name}` |")), "{name}");
+        }
+    }
+    walk_again(&folder.path().join("simulate.safetensors"));
+    replay_again(&folder.path().join("replay.safetensors"));
+}
+
+/// Turns and sonar in f64, straight from the README.
+fn walk_again(path: &Path) {
+    let bytes = std::fs::read(path).expect("a file");
+    let tensors = SafeTensors::deserialize(&bytes).expect("tensors");
+    let of = |name: &str| floats(&tensors, name);
+    let (start, pose, action, slip) = (of("start"), of("expected.pose"), of("action"), of("noise.slip"));
+    let (segment, noise, sonar) = (of("segment"), of("noise.sonar"), of("expected.sonar"));
+    let robots = start.len() / 3;
+    let steps = action.len() / robots;
+    let (mut turned, mut heard, mut near) = (0, 0, 0);
+    for place in 0..robots * steps {
+        let before = if place < robots { &start[3 * place..] } else { &pose[3 * (place - robots)..] };
+        let now = &pose[3 * place..];
+        let turn = [15.0, -15.0, 60.0, -60.0, 0.0, 0.0][action[place] as usize];
+        let heading = (before[2] + turn * slip[place]).rem_euclid(360.0);
+        let off = (heading - now[2]).abs();
+        assert!(off.min(360.0 - off) < 1.0e-3, "{heading} {}", now[2]);
+        turned += usize::from(turn != 0.0);
+        // A sample of the rays: every robot has its own.
+        let ray = place % 24;
+        let (sine, cosine) = (now[2] + 15.0 * ray as f64).to_radians().sin_cos();
+        let range = segment.chunks(7).filter_map(|s| crossing([s[0], s[1]], [s[2], s[3]], now, cosine, sine));
+        let range = range.fold(127.0, f64::min) * noise[24 * place + ray];
+        let reading = range.clamp(0.0, 127.0) + 0.5;
+        if (reading - reading.round()).abs() < 1.0e-3 {
+            near += 1;
+        } else {
+            heard += usize::from(reading.floor() == sonar[24 * place + ray]);
+        }
+    }
+    assert!(turned > robots && near < robots, "{turned} {near}");
+    // A ray that just touches the end of a wall may go either way.
+    assert!(heard + near > robots * steps - robots / 100, "{heard} + {near} of {}", robots * steps);
+}
+
+fn crossing(a: [f64; 2], b: [f64; 2], at: &[f64], cosine: f64, sine: f64) -> Option<f64> {
+    let along = |p: [f64; 2]| (p[0] - at[0]) * cosine + (p[1] - at[1]) * sine;
+    let aside = |p: [f64; 2]| (p[1] - at[1]) * cosine - (p[0] - at[0]) * sine;
+    let (left, right) = (aside(a), aside(b));
+    if (left > 0.0) == (right > 0.0) {
+        return None;
+    }
+    let distance = along(a) + (along(b) - along(a)) * left / (left - right);
+    (distance >= 0.0).then_some(distance)
+}
+
+/// One pass of TD(lambda) with Adam in f64, straight from the README.
+fn replay_again(path: &Path) {
+    let bytes = std::fs::read(path).expect("a file");
+    let tensors = SafeTensors::deserialize(&bytes).expect("tensors");
+    let of = |name: &str| floats(&tensors, name);
+    let numbers = numbers(&bytes);
+    let number = |name: &str| numbers[name].as_f64().unwrap_or_else(|| panic!("{name}"));
+    let (inputs, hidden, children, steps, lessons) = (52, 32, 6, 30, 10);
+    let (length, given, input) = (of("lesson.length"), of("lesson"), of("lesson.input"));
+    let (child, reward) = (of("lesson.child"), of("lesson.reward"));
+    let layers = ["hidden.weight", "hidden.bias", "output.weight", "output.bias"];
+    let load = |stage: &str| layers.map(|layer| of(&format!("{stage}.{layer}")));
+    let [mut w1, mut b1, mut w2, mut b2] = load("initial");
+    let learners = given.len() / lessons;
+    let adam = |weight: &mut f64, moments: &mut (f64, f64), slope: f64, clock: i32| {
+        moments.0 = number("beta1") * moments.0 + (1.0 - number("beta1")) * slope;
+        moments.1 = number("beta2") * moments.1 + (1.0 - number("beta2")) * slope * slope;
+        let rate = number("rate") * (1.0 - number("beta2").powi(clock)).sqrt() / (1.0 - number("beta1").powi(clock));
+        *weight += rate * moments.0 / (moments.1 + number("epsilon2")).sqrt();
+    };
+    let mut updates = 0;
+    for learner in 0..learners {
+        let mut clocks = vec![0; children];
+        let (mut m1, mut n1) = (vec![(0.0, 0.0); w1.len()], vec![(0.0, 0.0); b1.len()]);
+        let (mut m2, mut n2) = (vec![(0.0, 0.0); w2.len()], vec![(0.0, 0.0); b2.len()]);
+        for lesson in &given[learner * lessons..(learner + 1) * lessons] {
+            let (mut best, mut back) = (0.0, 0.0);
+            for step in (0..length[*lesson as usize] as usize).rev() {
+                let row = *lesson as usize * steps + step;
+                let x = &input[row * inputs..(row + 1) * inputs];
+                let net = |number: usize| {
+                    let unit = |k: usize| {
+                        let own = (learner * children + number) * hidden + k;
+                        let sum: f64 = x.iter().zip(&w1[own * inputs..]).map(|(x, w)| x * w).sum();
+                        (sum + b1[own]).tanh()
+                    };
+                    let units: Vec<f64> = (0..hidden).map(unit).collect();
+                    let own = learner * children + number;
+                    let sum: f64 = units.iter().zip(&w2[own * hidden..]).map(|(h, w)| h * w).sum();
+                    (units, (sum + b2[own]).tanh())
+                };
+                let nets: Vec<_> = (0..children).map(net).collect();
+                let greatest = nets.iter().map(|net| net.1).fold(-2.0, f64::max);
+                let future = (1.0 - number("lambda")) * best + number("lambda") * back;
+                let limit = number("target_limit");
+                let goal = (reward[row] + number("gamma") * future).clamp(-limit, limit);
+                let taken = child[row] as usize;
+                let (units, q) = &nets[taken];
+                let own = learner * children + taken;
+                clocks[taken] += 1;
+                updates += 1;
+                let clock = clocks[taken];
+                let error = (goal - q) * (1.0 - q * q);
+                for (k, h) in units.iter().enumerate() {
+                    let at = own * hidden + k;
+                    let slope = error * w2[at] * (1.0 - h * h);
+                    for (j, x) in x.iter().enumerate() {
+                        adam(&mut w1[at * inputs + j], &mut m1[at * inputs + j], slope * x, clock);
+                    }
+                    adam(&mut b1[at], &mut n1[at], slope, clock);
+                    adam(&mut w2[at], &mut m2[at], error * h, clock);
+                }
+                adam(&mut b2[own], &mut n2[own], error, clock);
+                (best, back) = (greatest, goal);
+            }
+        }
+    }
+    assert_eq!(updates as f64 * number("passes"), number("transitions"));
+    let (ours, initial) = (load("once"), load("initial"));
+    for (((layer, again), ours), initial) in layers.iter().zip([w1, b1, w2, b2]).zip(&ours).zip(&initial) {
+        let off = again.iter().zip(ours).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let moved = ours.iter().zip(initial).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(off < 2.0e-5 && moved > 1.0e-3, "{layer}: off by {off}, moved by {moved}");
+    }
+}
