@@ -25,8 +25,7 @@ pub mod workload;
 use crate::backend::BackendError;
 use crate::config::ConfigError;
 use crate::experiment::group::SetupError;
-use crate::record::RecordError;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Why a benchmark cannot be run, or its figures would mean nothing.
 #[derive(Debug, thiserror::Error)]
@@ -70,9 +69,6 @@ pub enum BenchError {
     /// A backend cannot be had, or failed.
     #[error(transparent)]
     Backend(#[from] BackendError),
-    /// A file of the run folder's kind cannot be written.
-    #[error(transparent)]
-    Record(#[from] RecordError),
 }
 
 /// Compares two executors' words of the same work.
@@ -88,4 +84,9 @@ pub fn same(work: &'static str, (left, a): (&str, &[u32]), (right, b): (&str, &[
         Some(place) => Err(differs(format!("word {place} is {:#010x} against {:#010x}", a[place], b[place]))),
         None => Ok(()),
     }
+}
+
+/// Writes a file.
+fn put(path: &Path, bytes: &[u8]) -> Result<(), BenchError> {
+    std::fs::write(path, bytes).map_err(|source| BenchError::File { path: path.to_owned(), source })
 }
