@@ -12,6 +12,7 @@ use skilltree::bench::result::Report;
 use skilltree::bench::tasks::{Decisions, Hierarchy, Replay, RobotSteps, Rule, Size, Task};
 use skilltree::learner::layout::{Cursor, Episode, Robot};
 use skilltree::learner::memory::Shared;
+use std::ops::Range;
 use std::path::Path;
 use std::process::Command;
 
@@ -50,7 +51,7 @@ impl Backend for Broken {
     fn adapter(&self) -> Option<String> {
         None
     }
-    fn cohort_size(&self, bytes_per_learner: usize) -> usize {
+    fn cohort_size(&self, bytes_per_learner: usize) -> Result<usize, BackendError> {
         self.inner.cohort_size(bytes_per_learner)
     }
     fn load(&mut self, cohort: Cohort) -> Result<(), BackendError> {
@@ -59,8 +60,11 @@ impl Backend for Broken {
     fn advance(&mut self, stop: Stop) -> Result<&[Cursor], BackendError> {
         self.inner.advance(stop)
     }
-    fn evaluate(&mut self, test: Test) -> Result<Vec<Episode>, BackendError> {
-        let mut episodes = self.inner.evaluate(test)?;
+    fn learners(&self) -> usize {
+        self.inner.learners()
+    }
+    fn evaluate_some(&mut self, test: Test, learners: Range<usize>) -> Result<Vec<Episode>, BackendError> {
+        let mut episodes = self.inner.evaluate_some(test, learners)?;
         if self.fault == Fault::Episode {
             flip(&mut episodes[0].agent.x);
         }

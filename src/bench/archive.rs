@@ -1,9 +1,7 @@
 //! Results that are kept: `benches/runs/DATE-MACHINE.json`.
 
-use super::BenchError;
 use super::result::Report;
-use crate::record::atomic;
-use crate::record::disk::FileSystem;
+use super::{BenchError, put};
 use std::path::{Path, PathBuf};
 
 /// Where results are kept, below the working directory.
@@ -19,7 +17,7 @@ pub fn keep(report: &Report, folder: &Path) -> Result<PathBuf, BenchError> {
     let names = (1_u32..).map(|number| if number == 1 { stem.clone() } else { format!("{stem}-{number}") });
     let mut paths = names.map(|name| folder.join(name + ".json"));
     let path = paths.find(|path| !path.exists()).unwrap_or_else(|| folder.join("bench.json"));
-    atomic::write(&FileSystem, &path, json(report)?.as_bytes())?;
+    put(&path, json(report)?.as_bytes())?;
     Ok(path)
 }
 

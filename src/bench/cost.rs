@@ -33,10 +33,10 @@ mod operations {
     pub(super) const RECIPROCAL_SQRT: usize = 3 + 3 * 4;
     /// `square_root`: a bound, a root, a product, a selection.
     pub(super) const SQUARE_ROOT: usize = 2 + RECIPROCAL_SQRT + 1 + 1;
-    /// `exponential`: bounds 4, rounding 5, remainder 4, square 1, polynomial 8, sum 3, power of two 2, product 1.
-    pub(super) const EXPONENTIAL: usize = 4 + 5 + 4 + 1 + 8 + 3 + 2 + 1;
-    /// `squash`: absolute value, product, exponential, two sums, reciprocal, product, sign 2, finiteness 3.
-    pub(super) const SQUASH: usize = 2 + EXPONENTIAL + 2 + RECIPROCAL + 1 + 2 + 3;
+    /// `exponential`: bounds 4, rounding 9, remainder 4, square 1, polynomial 8, sum 3, power of two 2, product 1.
+    pub(super) const EXPONENTIAL: usize = 4 + 9 + 4 + 1 + 8 + 3 + 2 + 1;
+    /// `squash`: bounds 4, square 1, two polynomials of 8, two products, reciprocal, finiteness 3.
+    pub(super) const SQUASH: usize = 4 + 1 + 2 * 8 + 2 + RECIPROCAL + 3;
     /// `flush`: absolute value, comparison, selection.
     pub(super) const FLUSH: usize = 3;
 }

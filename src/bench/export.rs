@@ -11,9 +11,7 @@
 mod replay;
 mod simulate;
 
-use super::BenchError;
-use crate::record::atomic;
-use crate::record::disk::FileSystem;
+use super::{BenchError, put};
 use safetensors::tensor::{Dtype, TensorView};
 use serde_json::{Map, Value};
 use std::collections::HashMap;
@@ -70,7 +68,7 @@ pub fn export(folder: &Path, learners: u32) -> Result<(), BenchError> {
     let readme = include_str!("export/README.md")
         .replace("{simulate}", &table(&walk, &numbers))
         .replace("{replay}", &table(&replay, &settings));
-    Ok(atomic::write(&FileSystem, &folder.join("README.md"), readme.as_bytes())?)
+    put(&folder.join("README.md"), readme.as_bytes())
 }
 
 fn object(value: Value) -> Map<String, Value> {
@@ -90,7 +88,7 @@ fn write(path: &Path, tensors: &[Tensor], numbers: &Map<String, Value>) -> Resul
     }
     let metadata = HashMap::from([("skilltree".to_owned(), Value::Object(numbers.clone()).to_string())]);
     let bytes = safetensors::serialize(views, Some(metadata)).map_err(|error| failed(error.to_string()))?;
-    Ok(atomic::write(&FileSystem, path, &bytes)?)
+    put(path, &bytes)
 }
 
 /// The tensors and numbers of a file, for the README.

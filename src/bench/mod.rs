@@ -26,8 +26,7 @@ use crate::backend::BackendError;
 use crate::config::ConfigError;
 use crate::experiment::climb::Halt;
 use crate::experiment::group::SetupError;
-use crate::record::RecordError;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Why a benchmark cannot be run, or its figures would mean nothing.
 #[derive(Debug, thiserror::Error)]
@@ -74,9 +73,6 @@ pub enum BenchError {
     /// A cohort has not come to its end.
     #[error(transparent)]
     Halt(#[from] Halt),
-    /// A file of the run folder's kind cannot be written.
-    #[error(transparent)]
-    Record(#[from] RecordError),
 }
 
 /// Compares two executors' words of the same work.
@@ -92,4 +88,9 @@ pub fn same(work: &'static str, (left, a): (&str, &[u32]), (right, b): (&str, &[
         Some(place) => Err(differs(format!("word {place} is {:#010x} against {:#010x}", a[place], b[place]))),
         None => Ok(()),
     }
+}
+
+/// Writes a file.
+fn put(path: &Path, bytes: &[u8]) -> Result<(), BenchError> {
+    std::fs::write(path, bytes).map_err(|source| BenchError::File { path: path.to_owned(), source })
 }

@@ -31,5 +31,8 @@ pub fn plan(config: &str, set: &[&str], seeds: u32) -> Result<Plan, BenchError> 
         fs::create_dir_all(parent).and_then(|()| fs::write(&path, text)).map_err(|source| failed(&path, source))?;
     }
     let set = set.iter().map(|text| (*text).to_owned()).collect();
-    Ok(load(&folder.path().join(config), &Overrides { set, seeds: Some(format!("0..{seeds}")), ..Overrides::default() })?)
+    Ok(load(
+        &folder.path().join(config),
+        &Overrides { set, seeds: Some(format!("0..{seeds}")), ..Overrides::default() },
+    )?)
 }
