@@ -8,7 +8,10 @@ use crate::math::rng::{Purpose, Stream, noise, roll};
 use crate::robot::motion::{NO_ACTION, move_body};
 use crate::skill::observe::{DICE_ACTUATOR, observe};
 
-/// Carries out the robot's action `dispatch.quanta` times, sensing after each.
+/// Carries out the robot's action and senses.
+///
+/// The shader repeats this `dispatch.quanta` times. Here the backend does: around a loop the compiler would prepare for
+/// many turns, and most calls want one.
 #[inline(always)]
 pub fn step(robot: &mut Robot, shared: &Shared) {
     let mut scratch = Scratch::default();

@@ -217,17 +217,41 @@ mod tests {
     #[test]
     fn noise_has_the_promised_moments() {
         let n = 400_000;
-        for (kind, deviation) in [(0, 1.0_f64), (1, 1.0 / 3.0_f64.sqrt())] {
-            let (mut sum, mut squares) = (0.0_f64, 0.0_f64);
-            for i in 0..n {
-                let w = philox([i, 0, 0, 0], [7, 9]);
-                let z = f64::from(noise(kind, w[0], w[1]));
-                sum += z;
-                squares += z * z;
+        let two_words: fn(u32, [u32; 4]) -> f32 = |kind, w| noise(kind, w[0], w[1]);
+        let one_word: fn(u32, [u32; 4]) -> f32 = |kind, w| coarse_noise(kind, w[2]);
+        for (name, noise) in [("noise", two_words), ("coarse_noise", one_word)] {
+            for (kind, deviation) in [(0, 1.0_f64), (1, 1.0 / 3.0_f64.sqrt())] {
+                let (mut sum, mut squares) = (0.0_f64, 0.0_f64);
+                for i in 0..n {
+                    let z = f64::from(noise(kind, philox([i, 0, 0, 0], [7, 9])));
+                    sum += z;
+                    squares += z * z;
+                }
+                let mean = sum / f64::from(n);
+                let sd = (squares / f64::from(n) - mean * mean).sqrt();
+                assert!(mean.abs() < 0.005 && (sd - deviation).abs() < 0.005, "{name}, kind {kind}: {mean} {sd}");
             }
-            let mean = sum / f64::from(n);
-            let sd = (squares / f64::from(n) - mean * mean).sqrt();
-            assert!(mean.abs() < 0.005 && (sd - deviation).abs() < 0.005, "kind {kind}: {mean} {sd}");
+        }
+    }
+
+    /// A step's words, one by one: no two rays and nobody else share any.
+    #[test]
+    fn every_bearing_has_a_word_of_its_own() {
+        let stream = Stream { key: [1, 2], skill: 3, trial: 4, step: 5, purpose: Purpose::Step as u32 };
+        let dice = roll(stream);
+        let sonar = bearing_words(&dice.x, &dice.y, &dice.z, &dice.w);
+        let light = draws(stream, 16);
+        let light = bearing_words(&light[0], &light[1], &light[2], &light[3]);
+        let mut seen = std::collections::HashSet::new();
+        for bearing in 0..24 {
+            let own = |first: usize| draw(stream, (first + bearing % 6) as u32)[bearing / 6];
+            assert_eq!((sonar[bearing], light[bearing]), (own(0), own(16)));
+            assert!(seen.insert(sonar[bearing]) && seen.insert(light[bearing]), "bearing {bearing}");
+        }
+        for i in 6..DICE {
+            let words = draw(stream, i as u32);
+            assert_eq!([dice.x[i], dice.y[i], dice.z[i], dice.w[i]], words);
+            assert!(words.iter().all(|word| seen.insert(*word)), "draw {i}");
         }
     }
 
@@ -238,5 +262,9 @@ mod tests {
         assert_eq!(below(!0, 7), 6);
         assert_eq!(noise(1, 0xffff, 0), 1.0);
         assert_eq!(noise(1, 0, 0), -1.0);
+        assert_eq!((coarse_noise(1, 0xffff), coarse_noise(1, 0)), (1.0, -1.0));
+        assert_eq!(coarse_noise(0, 0x7f80_7f80), 0.0);
+        // What `observe` takes to be out of reach.
+        assert!(coarse_noise(0, !0) < 3.5 && coarse_noise(0, 0) > -3.5);
     }
 }

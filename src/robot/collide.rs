@@ -1,7 +1,8 @@
 //! Contact of the disc with the segments: how far a move gets, and what touches the bumpers.
 //!
 //! Lanes are segments. Contact with a segment is contact with its line between the ends, or with one of
-//! its two end points; both are quadratic-free or a single square root.
+//! its two end points; both are quadratic-free or a single square root. The shader takes all segments, as it has a lane
+//! for each of most worlds; here they are those of a list ([`super::floor::Floor::touchable`]), which changes no bit.
 
 use super::floor::{BLOCK, SegmentBlock};
 use crate::math::functions::{reciprocal, square_root};
@@ -73,7 +74,8 @@ fn contact(block: &SegmentBlock, lane: usize, x: f32, y: f32, ux: f32, uy: f32) 
     (reach, cosine)
 }
 
-/// Sweeps the disc from (`x`, `y`) along the unit vector (`ux`, `uy`) for at most `reach` inches.
+/// Sweeps the disc past the segments in `near` from (`x`, `y`) along the unit vector (`ux`, `uy`) for at most `reach` inches.
+/// Contact within `dock_cosine` of the direction of travel connects to the charger.
 #[inline(always)]
 pub fn sweep(near: &[SegmentBlock], dock_cosine: f32, x: f32, y: f32, ux: f32, uy: f32, reach: f32) -> Travel {
     let mut nearest = [FAR; BLOCK];
@@ -99,7 +101,7 @@ pub fn sweep(near: &[SegmentBlock], dock_cosine: f32, x: f32, y: f32, ux: f32, u
     Travel { distance: if blocked { least } else { reach }, blocked, connected: blocked && plugged == 1 }
 }
 
-/// Bits of the bumpers that touch something: 1 front, 2 left, 4 back, 8 right. (`cosine`, `sine`) is the heading.
+/// Bits of the bumpers that touch something in `near`: 1 front, 2 left, 4 back, 8 right. (`cosine`, `sine`) is the heading.
 #[inline(always)]
 pub fn bumpers(near: &[SegmentBlock], x: f32, y: f32, cosine: f32, sine: f32) -> u32 {
     let mut bits = [0_u32; BLOCK];

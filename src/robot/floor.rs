@@ -1,8 +1,8 @@
-//! The floor plan as the CPU's lanes want it: segments transposed, and for every cell a list of those near it.
+//! The floor plan as the CPU's lanes want it: segments transposed, and lists of those that matter in each cell.
 //!
-//! The GPU reads the plan itself and takes all segments where the CPU takes a list. That changes no bit: segments that
-//! a list leaves out are too far to touch, and contact looks for the nearest; nor does the order of a list matter, for
-//! least, greatest and bits set in any lane do not depend on it.
+//! The GPU reads the plan and the atlas. It takes all segments where the CPU takes a list of what can be touched or can
+//! hide the light. That changes no bit: what a list leaves out is too far away or beside the way, and neither the least
+//! of some numbers nor the bits set in any depends on the order. Tests compare each list with all segments.
 
 use crate::learner::layout::{MAX_SEGMENTS, Segment, WorldPlan};
 use crate::robot::collide::{BUMPER_GAP, RADIUS};
@@ -143,7 +143,7 @@ fn list(atlas: &[u32], place: u32) -> &[u32] {
 /// Whether a robot that starts in the cell with this centre can touch a segment within [`LISTED_TRAVEL`].
 fn can_touch(segment: &Segment, x: f32, y: f32) -> bool {
     let (wx, wy) = (x - segment.ax, y - segment.ay);
-    let along = (segment.tx * wx + segment.ty * wy).clamp(0.0, segment.length);
+    let along = (segment.tx * wx + segment.ty * wy).max(0.0).min(segment.length);
     let (px, py) = (segment.tx * along - wx, segment.ty * along - wy);
     let corner = CELL * std::f32::consts::FRAC_1_SQRT_2;
     px.hypot(py) <= corner + LISTED_TRAVEL + RADIUS + BUMPER_GAP + MARGIN

@@ -13,7 +13,8 @@ use crate::robot::sonar::{LINES, Lines, crossing};
 /// 1 / (15 degrees in radians)^2.
 const SHARPNESS: f32 = 14.590_25;
 
-/// Whether nothing but the charger stands between the robot and the light.
+/// Whether nothing but the charger stands between the robot and the light. The shader asks all segments, this those
+/// of a list that decide it.
 #[inline(always)]
 pub fn in_sight(floor: &Floor, x: f32, y: f32) -> bool {
     let lx = floor.plan.light_x - x;

@@ -1,7 +1,11 @@
 //! The rotating sonar: 24 single rays from the centre, 0 to 127 inches (paper, section III).
 //!
-//! Lanes are rays. A ray crosses a segment where its two ends lie on different sides of the ray; the
-//! distance is a ratio, and ratios are compared by cross-multiplying, so that one reciprocal is enough.
+//! Lanes are the segments of the cell's list, then rays. A ray and the opposite one are on the same line; the line
+//! crosses a segment where its two ends lie on different sides of it. Of all crossings the closest counts: closeness,
+//! 1 / distance, is linear in the direction of the ray, and all that depends on the segment alone is worked out once.
+//!
+//! Here a lane is a line and finds what is ahead and behind; in the shader a lane is a ray, and the last twelve take the
+//! negative of their line's closeness. Negation is exact, so the bits are the same.
 
 use super::floor::{BLOCK, Floor};
 use crate::learner::layout::{LANES, RAYS};
@@ -26,7 +30,7 @@ pub type Lines = [f32; LINE_LANES];
 const RAY_COSINE: Lines = ray_table().1;
 const RAY_SINE: Lines = ray_table().0;
 
-/// Sines and cosines of the lines' bearings.
+/// Sines and cosines of the lines' bearings, straight ahead being 0.
 const fn ray_table() -> (Lines, Lines) {
     let mut sines = [0.0; LINE_LANES];
     let mut cosines = [0.0; LINE_LANES];
@@ -67,7 +71,7 @@ pub fn crossing(ax: f32, ay: f32, bx: f32, by: f32, dx: f32, dy: f32, ux: f32, u
     (if crosses { over_signed } else { -1.0 }, under.abs())
 }
 
-/// Distance along each ray to the nearest segment, at most [`SONAR_LIMIT`].
+/// Distance along each ray to the nearest segment; [`SONAR_LIMIT`], but for rounding, where there is none so close.
 #[inline(always)]
 pub fn ranges(floor: &Floor, x: f32, y: f32, ux: &Lines, uy: &Lines) -> Lanes {
     let mut ahead = [INVERSE_LIMIT; LINE_LANES];
