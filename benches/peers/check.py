@@ -60,6 +60,7 @@ def drill(work, once, result):
         worst = max(np.abs(weights[name] - expected[name]).max() for name in expected)
         limit = WEIGHT_LIMITS[label]
         if not (worst <= limit < moved / 100):
-            raise Mismatch(f"weights after {label}: {worst:.1e} off, {limit:.0e} allowed; learning moved them {moved:.1e}")
+            allowed = f"{limit:.0e} allowed; learning moved them {moved:.1e}"
+            raise Mismatch(f"weights after {label}: {worst:.1e} off, {allowed}")
         found[label] = worst
     return f"weights within {found['once']:.1e} after one pass, {found['all']:.1e} after {work.passes}"
