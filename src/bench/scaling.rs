@@ -15,6 +15,9 @@ use std::time::SystemTime;
 /// Numbers of learners.
 pub const COUNTS: [u32; 5] = [64, 256, 1024, 4096, 16_384];
 
+/// Seeds that the learners take in turn, so that every number of learners has the same mix of work.
+const SEEDS: u32 = 64;
+
 /// Cost per learner at several numbers of learners.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Scaling {
@@ -46,7 +49,6 @@ pub struct ScalingRow {
 /// Where the CPU backend cannot be had.
 pub fn scaling(counts: &[u32], samples: u32, command: &str, note: &mut dyn FnMut(&str)) -> Result<Scaling, BenchError> {
     let started = humantime::format_rfc3339_seconds(SystemTime::now()).to_string();
-    let most = counts.iter().copied().max().unwrap_or(0);
     let set = [
         "arms=[\"taught-adam\"]",
         "teacher.bank=16",
@@ -58,9 +60,10 @@ pub fn scaling(counts: &[u32], samples: u32, command: &str, note: &mut dyn FnMut
         "learning.replays=2",
         "learning.memory=4",
     ];
-    let plan = workload::plan(DOCKING, &set, most)?;
+    let plan = workload::plan(DOCKING, &set, SEEDS)?;
     let group = groups(&plan)?.swap_remove(0);
-    let ids = group.learners(&plan);
+    let seeds = group.learners(&plan);
+    let ids = |count: u32| seeds.iter().copied().cycle().take(count as usize).collect::<Vec<_>>();
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let mut backend = CpuBackend::new(threads, None)?;
     let mut spans: Vec<Vec<(f64, f64)>> = counts.iter().map(|_| Vec::new()).collect();
@@ -69,9 +72,10 @@ pub fn scaling(counts: &[u32], samples: u32, command: &str, note: &mut dyn FnMut
         for (count, spans) in counts.iter().zip(&mut spans) {
             note(&format!("sample {sample} of {samples}: {count} learners"));
             let repeats = (1024 / count).max(1);
+            let ids = ids(*count);
             let (_, span) = timed(|| {
                 for _repeat in 0..repeats {
-                    train(&plan, &group, &ids[..*count as usize], &|_| None, None, &mut backend, &mut ())?;
+                    train(&plan, &group, &ids, &|_| None, None, &mut backend, &mut ())?;
                 }
                 Ok(())
             })?;
