@@ -7,7 +7,7 @@ const LANE_SHARE: f32 = 0.03125f;
 
 const CLOCK_SECOND: u32 = 16u;
 
-// What the gradient of each row of weights has in factor.
+// What the gradient of each row of weights has in common.
 var<workgroup> row_factor: array<f32, MAX_ROWS>;
 // How far each row of weights moves along its mean gradient.
 var<workgroup> row_pace: array<f32, MAX_ROWS>;
@@ -103,8 +103,8 @@ fn backward(lane: u32, skill: u32, s: u32, base: u32, child: u32, delta: f32, pa
             nets[at] = nets[at] + velocity;
         }
     } else {
-        // Adam (Kingma and Ba, 2015) in its second form, with epsilon under the root: one reciprocal root serves
-        // where a root and a division would.
+        // Adam (Kingma and Ba, 2015) in its second form, with epsilon under the root: one reciprocal root serves where a
+        // root and a division would.
         let clock = base + skills[skill].clock_offset + number;
         let first = flush(nets[clock] * beta1);
         let second = flush(nets[clock + CLOCK_SECOND] * beta2);
