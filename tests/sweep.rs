@@ -14,18 +14,16 @@ use support::{skilltree, tiny, tree};
 use tempfile::TempDir;
 
 /// Two arms of one skill over two axes, one of which makes another teacher necessary.
-const DOCKING: [&str; 8] = [
+const DOCKING: [&str; 6] = [
     "--set",
     "arms=['taught-adam', 'untaught-sgd']",
     "--set",
     "sweep.skill.dock.trials=[4, 7]",
     "--set",
     "sweep.robot.noise.sonar={from=0.0, to=0.2, steps=2, label='noise'}",
-    "--seeds",
-    "3..5",
 ];
 /// A tree of skills: an axis of the root, which shares what is below, and one of a skill below.
-const TREE: [&str; 10] = [
+const TREE: [&str; 8] = [
     "--set",
     "arms=['persistent']",
     "--set",
@@ -34,21 +32,27 @@ const TREE: [&str; 10] = [
     "sweep.skill.pass.learning.rate=[0.1, 0.2]",
     "--set",
     "teacher.episodes=2",
-    "--seeds",
-    "0..2",
 ];
 
 /// A run of `tests/support/tree.toml` on the CPU.
 fn trees(out: &Path, more: &[&str]) -> Command {
     let mut command = skilltree(Path::new(env!("CARGO_MANIFEST_DIR")));
     command.args(["run", "tests/support/tree.toml", "--backend", "cpu", "--out"]).arg(out).args(TREE).args(more);
+    seeds(command, "0..2", more)
+}
+
+/// These seeds, if no others are wanted.
+fn seeds(mut command: Command, seeds: &str, more: &[&str]) -> Command {
+    if !more.contains(&"--seeds") {
+        command.args(["--seeds", seeds]);
+    }
     command
 }
 
 fn docking(out: &Path, more: &[&str]) -> Command {
     let mut command = tiny(out, &DOCKING);
     command.args(more);
-    command
+    seeds(command, "3..5", more)
 }
 
 /// What a command says on standard error; it must succeed.
