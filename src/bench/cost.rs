@@ -1,15 +1,19 @@
 //! What a unit of work costs: lane-operations and bytes, counted by hand in the twins.
 //!
 //! A lane-operation is one operation on one f32 or u32 of a lane: `+ - *`, comparison, selection, conversion, bit
-//! operation, high word of a product. Counted is what the result needs, in all 32 lanes that the code is written for,
-//! idle ones included; what is the same in all lanes is counted once or, where it is small, left out. So a share of a
+//! operation, high word of a product. Counted is what the result needs, in all lanes of the arrays that the twins are
+//! written with, idle ones included; what is the same in all lanes is counted once or, where it is small, left out. So a share of a
 //! limit is a little too low rather than too high. Negation and the compiler's own moves cost nothing here.
 //!
 //! Bytes are those of nets: what is read, and what is written, of the lanes' rows. Everything else fits registers or
 //! the nearest cache.
 
-use crate::learner::layout::{LANES, MAX_ROWS, MAX_SKILLS, SkillPlan, WorldPlan};
+use crate::learner::layout::{LANES, MAX_ROWS, MAX_SKILLS, SkillPlan};
+use crate::math::rng::DICE;
 use crate::qnet::backward::{OPTIMISER_ADAM_ROWS, OPTIMISER_SGD};
+use crate::robot::floor::{BLOCK, Floor};
+use crate::robot::light::{falloff, in_sight};
+use crate::robot::sonar::LINE_LANES;
 use serde::{Deserialize, Serialize};
 
 /// Cost of one unit of work.
@@ -25,8 +29,8 @@ pub struct Cost {
 mod operations {
     /// `philox` with its counter: ten rounds of two products, their high words and four exclusive ors.
     pub(super) const DRAW: usize = 10 * 8 + 1;
-    /// `noise`, the bell: four halves, three sums, a difference, a conversion, a product.
-    pub(super) const NOISE: usize = 4 + 3 + 3;
+    /// `coarse_noise`, the bell: bytes and halves 5, sums 2, a difference, a conversion, a product.
+    pub(super) const NOISE: usize = 5 + 2 + 3;
     /// `reciprocal`: a difference of bits and three times two products and a difference.
     pub(super) const RECIPROCAL: usize = 1 + 3 * 3;
     /// `reciprocal_sqrt`: a product, a shift, a difference, three times three products and a difference.
@@ -42,9 +46,10 @@ mod operations {
 }
 use operations::{DRAW, EXPONENTIAL, FLUSH, NOISE, RECIPROCAL, RECIPROCAL_SQRT, SQUARE_ROOT, SQUASH};
 
-/// One lane and segment of `ranges`: the sides of two ends 8 and their comparison 1, the slope 3, signs and selections 4,
-/// and the comparison with the nearest so far 7.
-const CROSSING: usize = 8 + 1 + 3 + 4 + 7;
+/// One lane of `ranges` that is a segment: ends 4, direction 2, distance 3, bound 4, reciprocal, sign 2, slopes 2.
+const HEARD: usize = 4 + 2 + 3 + 4 + RECIPROCAL + 2 + 2;
+/// One lane of `ranges` that is a line, at one segment: sides 6 and 1, closeness 3, selection 1, nearest both ways 4.
+const CROSSING: usize = 6 + 1 + 3 + 1 + 4;
 /// One lane of `contact`: the line 32 and a reciprocal, two end points of 13 and a root each, selections 12.
 const CONTACT: usize = 32 + RECIPROCAL + 2 * (13 + SQUARE_ROOT) + 12;
 /// One lane of `bumpers`.
@@ -53,24 +58,38 @@ const TOUCH: usize = 35;
 const SIGHT: usize = 33;
 /// Five rounds that bring 32 lanes together.
 const REDUCE: usize = LANES - 1;
+/// Draws that are made at once for the bearings of the light.
+const LIGHT_DRAWS: usize = 8;
 
-/// A step of a robot: all random numbers, contact, bumpers, 24 ranges, light and compass. `segments` is the mean
-/// length of the lists of segments that robots meet, `moves` the share of actions that travel.
-pub fn step(world: &WorldPlan, segments: f64, moves: f64) -> Cost {
-    let lanes = LANES as f64;
-    let blocks = f64::from(world.segments.div_ceil(LANES as u32));
-    let dice = lanes * DRAW as f64;
-    let sweep = blocks * lanes * (CONTACT + 9) as f64 + (4 * LANES + 2 * REDUCE) as f64;
-    let bumpers = blocks * lanes * TOUCH as f64 + REDUCE as f64;
-    let rays = lanes * 6.0;
-    let ranges = lanes * (segments * CROSSING as f64 + (RECIPROCAL + 1) as f64);
-    // Noise 2, the reading 6 and its place in a word 2.
-    let readings = lanes * (NOISE + 2 + 6 + 2) as f64;
-    // Direction 4, exponent 2, brightness 1, noise 3, bit 4.
-    let light = lanes * (4 + 2 + EXPONENTIAL + 1 + NOISE + 3 + 4) as f64 + blocks * lanes * SIGHT as f64;
-    let lit = if world.lit == 1 { light + (2 * REDUCE) as f64 } else { 0.0 };
-    let lane_operations = dice + moves * sweep + bumpers + rays + ranges + readings + lit;
-    Cost { lane_operations, bytes: 0.0 }
+/// A step of a robot: all random numbers, contact, bumpers, 24 ranges, light and compass; mean over the places where
+/// robots are. `light` is the noise of the light, `moves` the share of actions that travel.
+pub fn step(floor: &Floor, light: f32, places: impl Iterator<Item = (f32, f32)>, moves: f64) -> Cost {
+    let (mut sum, mut count) = (0.0, 0_u32);
+    for (x, y) in places {
+        sum += step_at(floor, light, x, y, moves);
+        count += 1;
+    }
+    Cost { lane_operations: sum / f64::from(count.max(1)), bytes: 0.0 }
+}
+
+fn step_at(floor: &Floor, light: f32, x: f32, y: f32, moves: f64) -> f64 {
+    let touched = floor.touchable(x, y, 0.0).len() * BLOCK;
+    let sweep = touched * (CONTACT + 9) + 5 * BLOCK;
+    let bumpers = touched * TOUCH + BLOCK;
+    let rays = LINE_LANES * 6;
+    let (heard, segments) = floor.audible(x, y);
+    let ranges = heard.len() * BLOCK * HEARD + segments * LINE_LANES * CROSSING + LANES * RECIPROCAL;
+    // Noise 2, the reading 7, its place in a word 1.
+    let readings = LANES * (NOISE + 2 + 7 + 1);
+    let mut lit = 0;
+    if floor.plan.lit == 1 && falloff(floor, x, y) * (light * 3.5 + 1.0) > 1.0 {
+        lit += floor.hiding(x, y).len() * BLOCK * SIGHT + BLOCK;
+        if in_sight(floor, x, y) {
+            // Direction 4; exponent 2, brightness 1, noise 3, bit 4.
+            lit += LINE_LANES * 4 + LANES * (2 + EXPONENTIAL + 1 + NOISE + 3 + 4) + REDUCE + LIGHT_DRAWS * DRAW;
+        }
+    }
+    (DICE * DRAW + bumpers + rays + ranges + readings + lit) as f64 + moves * sweep as f64
 }
 
 /// All nets of a skill forwards: weights read once.
@@ -105,9 +124,15 @@ pub fn transition(skill: &SkillPlan, optimiser: u32) -> Cost {
 /// A step of a robot whose skill number `root` decides: a look, the nets of the root and of the skills whose values
 /// somebody's applicability depends on. The nets of a skill that is chosen and that nobody watches are not counted,
 /// nor is travel: both depend on what is chosen.
-pub fn decision(world: &WorldPlan, segments: f64, skills: &[SkillPlan], root: usize) -> Cost {
+pub fn decision(
+    floor: &Floor,
+    light: f32,
+    places: impl Iterator<Item = (f32, f32)>,
+    skills: &[SkillPlan],
+    root: usize,
+) -> Cost {
     let watched = (0..root.min(MAX_SKILLS)).filter(|n| (skills[root].watched >> n) & 1 == 1);
-    watched.chain([root]).map(|n| forward(&skills[n])).fold(step(world, segments, 0.0), |sum, own| Cost {
+    watched.chain([root]).map(|n| forward(&skills[n])).fold(step(floor, light, places, 0.0), |sum, own| Cost {
         lane_operations: sum.lane_operations + own.lane_operations,
         bytes: sum.bytes + own.bytes,
     })
@@ -115,16 +140,4 @@ pub fn decision(world: &WorldPlan, segments: f64, skills: &[SkillPlan], root: us
 
 fn row_bytes(rows: usize) -> usize {
     rows * LANES * size_of::<f32>()
-}
-
-/// Mean length of the lists of segments that robots at these places meet.
-pub fn mean_list(world: &WorldPlan, atlas: &[u32], places: impl Iterator<Item = (f32, f32)>) -> f64 {
-    let lengths = places.filter_map(|(x, y)| {
-        let column = ((x / 12.0) as u32).min(world.cell_columns.saturating_sub(1));
-        let row = ((y / 12.0) as u32).min(world.cell_rows.saturating_sub(1));
-        let cell = (world.cell_starts + row * world.cell_columns + column) as usize;
-        Some(f64::from(atlas.get(cell + 1)?.saturating_sub(*atlas.get(cell)?)))
-    });
-    let (sum, count) = lengths.fold((0.0, 0_u32), |(sum, count), length| (sum + length, count + 1));
-    sum / f64::from(count.max(1))
 }

@@ -11,11 +11,11 @@ use crate::experiment::senses::{floor_only, robot_at};
 use crate::learner::layout::{Robot, Segment, WorldPlan};
 use crate::learner::memory::Shared;
 use crate::math::functions::{exponential, reciprocal, reciprocal_sqrt, sin_cos, square_root, wrap_degrees};
-use crate::math::rng::{Purpose, Stream, below, draw, noise, philox};
+use crate::math::rng::{Purpose, Stream, below, coarse_noise, draw, noise, philox};
 use crate::robot::collide::{BUMPER_GAP, RADIUS};
 use crate::robot::motion::{BACKWARD, COLLISION, DOCKED, FORWARD, turn_of};
-use crate::robot::sonar::{SONAR_LIMIT, reading};
-use crate::skill::observe::{DICE_ACTUATOR, DICE_COMPASS};
+use crate::robot::sonar::{LINES, reading};
+use crate::skill::observe::{DICE_ACTUATOR, DICE_COMPASS, DICE_LIGHT};
 use crate::world::Pose;
 use glam::Vec2;
 
@@ -101,22 +101,23 @@ impl StepNoise {
     /// The noise of the step that `robot` takes next.
     pub fn next(robot: &Robot) -> Self {
         let stream = stream_of(robot);
-        let term = |words: [u32; 2]| noise(robot.noise_kind, words[0], words[1]);
-        let first = |number: usize| {
+        let apart = |number: usize| {
             let [x, y, ..] = draw(stream, number as u32);
-            term([x, y])
+            noise(robot.noise_kind, x, y)
         };
-        let second = |number: usize| {
-            let [.., z, w] = draw(stream, number as u32);
-            term([z, w])
-        };
+        let shared = |first: u32, bearing: usize| coarse_noise(robot.noise_kind, bearing_word(stream, first, bearing));
         Self {
-            slip: robot.noise_actuator * first(DICE_ACTUATOR) + 1.0,
-            sonar: std::array::from_fn(|ray| robot.noise_sonar * first(ray) + 1.0),
-            light: std::array::from_fn(|ray| robot.noise_light * second(ray) + 1.0),
-            compass: robot.noise_compass * first(DICE_COMPASS),
+            slip: robot.noise_actuator * apart(DICE_ACTUATOR) + 1.0,
+            sonar: std::array::from_fn(|ray| robot.noise_sonar * shared(0, ray) + 1.0),
+            light: std::array::from_fn(|ray| robot.noise_light * shared(DICE_LIGHT, ray) + 1.0),
+            compass: robot.noise_compass * apart(DICE_COMPASS),
         }
     }
+}
+
+/// The word of a bearing: six draws from number `first` on have a word for each of 24.
+fn bearing_word(stream: Stream, first: u32, bearing: usize) -> u32 {
+    draw(stream, first + bearing as u32 % 6)[bearing / 6]
 }
 
 fn stream_of(robot: &Robot) -> Stream {
@@ -217,6 +218,24 @@ fn contact(segment: &Segment, x: f32, y: f32, ux: f32, uy: f32) -> (f32, f32) {
     (reach, aim)
 }
 
+/// What rays need to know of a segment: its ends, and how close it is along x and y.
+struct Heard {
+    a: (f32, f32),
+    b: (f32, f32),
+    slope: (f32, f32),
+}
+
+impl Heard {
+    fn new(segment: &Segment, x: f32, y: f32) -> Self {
+        let (ax, ay) = (segment.ax - x, segment.ay - y);
+        let (dx, dy) = (segment.bx - segment.ax, segment.by - segment.ay);
+        let over = ax * dy - ay * dx;
+        let inverse = reciprocal(over.abs().max(1.0e-4 * segment.length));
+        let signed = if over < 0.0 { -inverse } else { inverse };
+        Self { a: (ax, ay), b: (segment.bx - x, segment.by - y), slope: (dy * signed, dx * signed) }
+    }
+}
+
 fn sense(robot: &mut Robot, world: &WorldPlan, atlas: &[u32], stream: Stream) {
     let (x, y) = (robot.x, robot.y);
     let (sine, cosine) = sin_cos(robot.heading);
@@ -224,24 +243,28 @@ fn sense(robot: &mut Robot, world: &WorldPlan, atlas: &[u32], stream: Stream) {
     let row = ((y * 0.083_333_336) as u32).min(world.cell_rows - 1);
     let cell = (world.cell_starts + row * world.cell_columns + column) as usize;
     let near = &atlas[atlas[cell] as usize..atlas[cell + 1] as usize];
-    let seen = world.lit == 1 && in_sight(world, x, y);
+    let near: Vec<Heard> = near.iter().map(|i| Heard::new(&world.segment[*i as usize], x, y)).collect();
     let (lx, ly) = (world.light_x - x, world.light_y - y);
     let distance2 = (lx * lx + ly * ly).max(1.0);
     let (nearness, falloff) = (reciprocal_sqrt(distance2), world.light_range2 * reciprocal(distance2));
+    // No noise reaches 3.5.
+    let reached = world.lit == 1 && falloff * (robot.noise_light * 3.5 + 1.0) > 1.0;
+    let seen = reached && in_sight(world, x, y);
     let mut readings = [0_u32; 24];
     let mut lit = 0;
     for (ray, slot) in readings.iter_mut().enumerate() {
-        let words = draw(stream, ray as u32);
-        let (ray_sine, ray_cosine) = sin_cos(ray as f32 * 15.0);
+        // A ray and the opposite one are on one line.
+        let (ray_sine, ray_cosine) = sin_cos((ray % LINES) as f32 * 15.0);
         let ux = cosine * ray_cosine - sine * ray_sine;
         let uy = sine * ray_cosine + cosine * ray_sine;
-        let error = robot.noise_sonar * noise(robot.noise_kind, words[0], words[1]) + 1.0;
-        *slot = reading(cast(world, near, x, y, ux, uy), error);
+        let facing = if ray < LINES { 1.0 } else { -1.0 };
+        let noise = coarse_noise(robot.noise_kind, bearing_word(stream, 0, ray));
+        *slot = reading(cast(&near, ux, uy, facing), robot.noise_sonar * noise + 1.0);
         if seen {
-            let aim = (ux * lx + uy * ly) * nearness;
+            let aim = facing * ((ux * lx + uy * ly) * nearness);
             let bright = falloff * exponential(14.590_25 * (aim - 1.0));
-            let glow = bright * (robot.noise_light * noise(robot.noise_kind, words[2], words[3]) + 1.0);
-            lit |= u32::from(glow > 1.0) << ray;
+            let noise = coarse_noise(robot.noise_kind, bearing_word(stream, DICE_LIGHT, ray));
+            lit |= u32::from(bright * (robot.noise_light * noise + 1.0) > 1.0) << ray;
         }
     }
     for (word, four) in readings.as_chunks::<4>().0.iter().enumerate() {
@@ -253,24 +276,15 @@ fn sense(robot: &mut Robot, world: &WorldPlan, atlas: &[u32], stream: Stream) {
     robot.record[7] = wrap_degrees(robot.heading + robot.noise_compass * error).to_bits();
 }
 
-fn cast(world: &WorldPlan, near: &[u32], x: f32, y: f32, ux: f32, uy: f32) -> f32 {
-    let (mut over_best, mut under_best) = (SONAR_LIMIT, 1.0);
-    for index in near {
-        let segment = &world.segment[*index as usize];
-        let (ax, ay) = (segment.ax - x, segment.ay - y);
-        let (bx, by) = (segment.bx - x, segment.by - y);
-        if (ax * uy - ay * ux > 0.0) == (bx * uy - by * ux > 0.0) {
-            continue;
-        }
-        let (dx, dy) = (segment.bx - segment.ax, segment.by - segment.ay);
-        let over = ax * dy - ay * dx;
-        let under = ux * dy - uy * dx;
-        let (over, under) = if under < 0.0 { (-over, -under) } else { (over, under) };
-        if over >= 0.0 && over * under_best < over_best * under {
-            (over_best, under_best) = (over, under);
+/// Distance to the nearest segment along a line, ahead (`facing` 1) or behind (-1).
+fn cast(near: &[Heard], ux: f32, uy: f32, facing: f32) -> f32 {
+    let mut closest = 0.007_874_016;
+    for Heard { a, b, slope } in near {
+        if (a.0 * uy > a.1 * ux) != (b.0 * uy > b.1 * ux) {
+            closest = (facing * (ux * slope.0 - uy * slope.1)).max(closest);
         }
     }
-    over_best * reciprocal(under_best)
+    reciprocal(closest)
 }
 
 fn in_sight(world: &WorldPlan, x: f32, y: f32) -> bool {

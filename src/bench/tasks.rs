@@ -13,6 +13,7 @@ use crate::config::plan::Plan;
 use crate::experiment::group::{Group, LearnerId, groups};
 use crate::experiment::train::train;
 use crate::qnet::backward::{OPTIMISER_ADAM_ROWS, OPTIMISER_SGD};
+use glam::Vec2;
 
 /// A piece of work done once.
 #[derive(Debug)]
@@ -101,9 +102,9 @@ impl Task for RobotSteps {
 
     fn cost(&self) -> Option<(Cost, Limit, Option<Limit>)> {
         let Walk { shared, robots, .. } = &self.walk;
-        let world = &shared.floor.plan;
-        let list = cost::mean_list(world, &shared.atlas, robots.iter().map(|robot| (robot.x, robot.y)));
-        Some((cost::step(world, list, 1.0 / 3.0), Limit::CompareSelect, None))
+        let light = robots.first().map_or(0.0, |robot| robot.noise_light);
+        let places = robots.iter().map(|robot| (robot.x, robot.y));
+        Some((cost::step(&shared.floor, light, places, 1.0 / 3.0), Limit::CompareSelect, None))
     }
 
     fn run(&self, executor: &mut Executor, sample: u32) -> Result<Option<Done>, BenchError> {
@@ -274,8 +275,9 @@ impl Task for Decisions<'_> {
         let cells = (0..).map(|row| row as f32 * 12.0 + 6.0).take_while(|y| *y < size.y);
         let places = cells
             .flat_map(|y| (0..).map(move |column| (column as f32 * 12.0 + 6.0, y)).take_while(|(x, _)| *x < size.x));
-        let list = cost::mean_list(&shared.floor.plan, &shared.atlas, places);
-        let cost = cost::decision(&shared.floor.plan, list, &shared.skills, self.cohort.skills - 1);
+        let places = places.filter(|(x, y)| self.hierarchy.plan.world().is_free(Vec2::new(*x, *y)));
+        let light = self.hierarchy.plan.arms[0].noise.light;
+        let cost = cost::decision(&shared.floor, light, places, &shared.skills, self.cohort.skills - 1);
         Some((cost, Limit::MultiplyAdd, Some(Limit::FarRead)))
     }
 
