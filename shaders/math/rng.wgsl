@@ -52,7 +52,7 @@ fn roll(lane: u32, stream: Stream) {
 }
 
 // The word of bearing `b`, whose six draws begin with number `first`: word `b` / 6 of draw `b` % 6.
-fn bearing_word(first: u32, b: u32) -> u32 {
+fn bearing_words(first: u32, b: u32) -> u32 {
     return dice[first + b % 6u][b / 6u];
 }
 

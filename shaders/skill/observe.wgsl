@@ -16,7 +16,7 @@ fn observe(lane: u32, x: f32, y: f32, heading: f32, bumpers: u32, terms: Noise) 
     let turn = sin_cos(heading);
     let u = rays(lane, turn.y, turn.x);
     let range = ranges(lane, x, y, u.x, u.y);
-    let error = terms.sonar * coarse_noise(terms.kind, bearing_word(DICE_SONAR, lane % RAYS)) + 1.0f;
+    let error = terms.sonar * coarse_noise(terms.kind, bearing_words(DICE_SONAR, lane % RAYS)) + 1.0f;
     readings[lane] = reading(range, error);
     var lit = 0u;
     if world.lit == 1u {
@@ -26,7 +26,7 @@ fn observe(lane: u32, x: f32, y: f32, heading: f32, bumpers: u32, terms: Noise) 
             let ux = select(u.x, -u.x, lane >= LINES);
             let uy = select(u.y, -u.y, lane >= LINES);
             let bright = brightness(most, x, y, ux, uy);
-            let shift = coarse_noise(terms.kind, bearing_word(DICE_LIGHT, lane % RAYS));
+            let shift = coarse_noise(terms.kind, bearing_words(DICE_LIGHT, lane % RAYS));
             let glow = bright * (terms.light * shift + 1.0f);
             lit = lanes_or(lane, select(0u, 1u << lane, glow > 1.0f && lane < RAYS));
         }
