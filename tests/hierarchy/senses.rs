@@ -351,7 +351,7 @@ fn lessons_of_skills_that_remember_hold_what_they_do() {
         // It goes on after each door.
         "skill.door.ends=[]",
         "skill.door.lessons=4",
-        "skill.door.trials=6",
+        "skill.door.trials=30",
         "skill.door.max_steps=40",
         "teacher.bank=8",
         "learning.taught_passes=1",
@@ -369,7 +369,7 @@ fn lessons_of_skills_that_remember_hold_what_they_do() {
     let settings = &cohort.settings[0];
     let stride = skill.lesson_stride as usize;
     let taught = group.shared.bank.chunks(stride).take(8);
-    let tried = cohort.lessons[skill.memory_offset as usize..].chunks(stride).take(6);
+    let tried = cohort.lessons[skill.memory_offset as usize..].chunks(stride).take(30);
     let (mut doors, mut lights) = (0, 0);
     for (number, lesson) in taught.chain(tried).enumerate() {
         let mut expected = Memory { light: 0.0, door: [0.0; 3], means: [0.0; 2] };
