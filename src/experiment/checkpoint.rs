@@ -6,8 +6,9 @@
 use super::climb::{Keeper, Moment, Wish};
 use super::family::group_of;
 use super::group::{Group, LearnerId};
-use super::result::{read_failure, read_tests, write_double, write_failure, write_tests};
+use super::result::{TestResult, read_failure, read_tests, write_double, write_failure, write_tests};
 use super::run::Observer;
+use super::sound::{are_rows, are_tests, is_known};
 use super::standing::Standing;
 use super::thresholds::Fit;
 use super::train::Stem;
@@ -67,7 +68,6 @@ impl Checkpoint {
     pub fn read(bytes: &[u8], plan: &Plan, groups: &[Group]) -> Result<Self, PartError> {
         let words = words_of(bytes)?;
         let mut reader = Reader::new(&words);
-        let known = |id: LearnerId| id.arm < plan.arms.len() && plan.seeds.binary_search(&id.seed).is_ok();
         let mut branches = Vec::new();
         let [count] = reader.words()?;
         for _branch in 0..count {
@@ -80,8 +80,14 @@ impl Checkpoint {
         let standing = Standing::read(&mut reader, groups)?;
         reader.end()?;
         let of_branches = |stems: &Vec<Stem>| stems.iter().map(|stem| stem.id).eq(branches.iter().copied());
-        let sound =
-            branches.iter().copied().chain(standing.learners()).all(known) && stems.as_ref().is_none_or(of_branches);
+        let of_plan = |arm: usize, tests: &[TestResult], rows: &[u32]| {
+            let arm = &plan.arms[arm];
+            are_tests(plan, arm, tests) && are_rows(arm, rows)
+        };
+        let sound = branches.iter().copied().chain(standing.learners()).all(|id| is_known(plan, id))
+            && stems.as_ref().is_none_or(of_branches)
+            && stems.iter().flatten().all(|stem| of_plan(stem.id.arm, &stem.tests, &stem.rows))
+            && standing.results.iter().all(|result| of_plan(result.id.arm, &result.tests, &result.rows));
         if sound { Ok(Self { place: Place { branches, stems }, standing }) } else { Err(PartError) }
     }
 }

@@ -17,6 +17,7 @@ pub mod parts;
 pub mod result;
 pub mod run;
 pub mod senses;
+mod sound;
 pub mod standing;
 pub mod thresholds;
 pub mod train;

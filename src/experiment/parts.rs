@@ -1,7 +1,10 @@
 //! The committed parts of a run: which learners are finished, and what they leave, read when it is asked for.
 
-use super::group::LearnerId;
+use super::family::group_of;
+use super::group::{Group, LearnerId};
 use super::result::{LearnerResult, decode, encode};
+use super::sound::{is_complete, is_known};
+use super::words::PartError;
 use crate::config::plan::Plan;
 use crate::record::{RecordError, RunFolder};
 use std::collections::{BTreeMap, VecDeque};
@@ -25,11 +28,16 @@ impl Parts {
     ///
     /// # Errors
     /// [`RecordError::Damaged`], [`RecordError::OtherProgram`], [`RecordError::Unreadable`].
-    pub fn read(plan: &Plan, folder: &RunFolder) -> Result<Self, RecordError> {
+    pub fn read(plan: &Plan, groups: &[Group], folder: &RunFolder) -> Result<Self, RecordError> {
         let mut parts = Self::default();
         for name in folder.parts()? {
-            let known = |id: &LearnerId| id.arm < plan.arms.len() && plan.seeds.binary_search(&id.seed).is_ok();
-            let ids: Vec<LearnerId> = load(folder, &name)?.into_keys().filter(known).collect();
+            let mut results = load(folder, &name)?;
+            results.retain(|id, _| is_known(plan, *id));
+            let complete = |result: &LearnerResult| is_complete(plan, group_of(groups, result.id.arm), result);
+            if !results.values().all(complete) {
+                return Err(damaged(folder, &name, &PartError));
+            }
+            let ids: Vec<LearnerId> = results.into_keys().collect();
             parts.note(name, &ids);
         }
         Ok(parts)
@@ -91,10 +99,14 @@ impl Parts {
 
 fn load(folder: &RunFolder, name: &str) -> Result<BTreeMap<LearnerId, LearnerResult>, RecordError> {
     let Some(bytes) = folder.read_part(name)? else { return Ok(BTreeMap::new()) };
-    let results = decode(&bytes).map_err(|error| RecordError::Damaged {
+    let results = decode(&bytes).map_err(|error| damaged(folder, name, &error))?;
+    Ok(results.into_iter().map(|result| (result.id, result)).collect())
+}
+
+fn damaged(folder: &RunFolder, name: &str, error: &PartError) -> RecordError {
+    RecordError::Damaged {
         path: folder.dir().join("parts").join(name),
         problem: error.to_string(),
         hint: "remove this file and give the same command again: only this part is computed anew",
-    })?;
-    Ok(results.into_iter().map(|result| (result.id, result)).collect())
+    }
 }

@@ -84,7 +84,7 @@ pub fn run(
     mut provenance: Provenance,
     observer: &mut dyn Observer,
 ) -> Result<(), RunError> {
-    let parts = Parts::read(plan, &folder)?;
+    let parts = Parts::read(plan, groups, &folder)?;
     let saved = saved(plan, groups, &folder, observer)?;
     let mut run = Run {
         plan,

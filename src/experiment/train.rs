@@ -227,6 +227,11 @@ pub fn unpack(weights: &[f32], skills: &[SkillPlan], stride: usize) -> Vec<f32> 
     nets
 }
 
+/// Number of the weights of a learner's nets.
+pub(super) fn weight_count(skills: &[SkillPlan]) -> usize {
+    places(skills).map(|(_, slab)| slab).sum()
+}
+
 /// First word and size of the weights of every net. A mirror image has none of its own.
 fn places(skills: &[SkillPlan]) -> impl Iterator<Item = (usize, usize)> {
     skills.iter().filter(|skill| skill.mirrored == 0).flat_map(|skill| {

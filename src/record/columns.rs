@@ -1,10 +1,10 @@
 //! Columns of a table, to and from Parquet. Knows nothing of what they mean.
 
-use super::pages::Pages;
+use super::thrift::{footer_is_sound, pages_are_sound};
 use super::{FORMAT, RecordError};
 use bytes::Bytes;
 use parquet::basic::Compression;
-use parquet::column::reader::{get_column_reader, get_typed_column_reader};
+use parquet::column::reader::get_typed_column_reader;
 use parquet::column::writer::ColumnWriter;
 use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DataType, DoubleType, FloatType, Int32Type};
 use parquet::errors::ParquetError;
@@ -137,7 +137,15 @@ impl<'path> Table<'path> {
     pub(super) fn read(file: Vec<u8>, path: &'path Path, schema: &str) -> Result<Self, RecordError> {
         let damaged = |error: ParquetError| RecordError::damaged(path, error.to_string());
         let bytes = file.len() as u64;
-        let reader = SerializedFileReader::new(Bytes::from(file)).map_err(damaged)?;
+        let forged = || RecordError::damaged(path, "it claims to hold more than its length allows");
+        let file = Bytes::from(file);
+        if !footer_is_sound(&file) {
+            return Err(forged());
+        }
+        let reader = SerializedFileReader::new(file.clone()).map_err(damaged)?;
+        if !pages_are_sound(&file, reader.metadata()) {
+            return Err(forged());
+        }
         check_schema(path, reader.metadata(), &parse_message_type(schema).map_err(damaged)?)?;
         check_format(path, reader.metadata())?;
         let rows = u64::try_from(reader.metadata().file_metadata().num_rows())
@@ -188,11 +196,9 @@ impl<'path> Table<'path> {
         let mut values = Vec::new();
         let mut batch = Vec::with_capacity(BATCH);
         for group in 0..self.reader.num_row_groups() {
-            let pages = self.reader.get_row_group(group).and_then(|group| group.get_column_page_reader(column));
-            let kind = self.reader.metadata().file_metadata().schema_descr().column(column);
-            let from = get_column_reader(kind, Box::new(Pages(pages.map_err(damaged)?)));
+            let from = self.reader.get_row_group(group).and_then(|group| group.get_column_reader(column));
             // The schema check has settled the type, so this cannot meet another.
-            let mut from = get_typed_column_reader::<D>(from);
+            let mut from = get_typed_column_reader::<D>(from.map_err(damaged)?);
             loop {
                 batch.clear();
                 let (read, _, _) = from.read_records(BATCH, None, None, &mut batch).map_err(damaged)?;

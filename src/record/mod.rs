@@ -14,11 +14,11 @@ pub mod finishing;
 pub mod folder;
 mod frame;
 pub mod manifest;
-mod pages;
 pub mod places;
 pub mod stream;
 pub mod sweep;
 pub mod tables;
+mod thrift;
 pub mod trajectories;
 pub mod weights;
 

@@ -16,6 +16,7 @@ mod within;
 use faulty::{Fault, Faulty, Plan};
 use memory::Memory;
 use skilltree::cli::Failure;
+use skilltree::experiment::run::RunError;
 use skilltree::record::disk::Disk;
 use skilltree::record::{Manifest, RecordError};
 use skilltree::report;
@@ -182,6 +183,40 @@ fn a_run_survives_every_fault_of_every_call() {
         }
     }
     eprintln!("{} calls, {runs} runs with a fault", log.len());
+}
+
+/// Told to stop, and then to go on: a checkpoint lies in between.
+fn stopped_and_gone_on(disk: &Arc<dyn Disk>) -> Result<(), RunError> {
+    match experiment().stop(disk, &folder()) {
+        Err(RunError::Stopped { .. }) => experiment().run(disk, &folder()),
+        other => other,
+    }
+}
+
+#[test]
+fn a_stopped_run_survives_a_fault_of_every_call() {
+    let whole = Faulty::new(Memory::default(), None);
+    stopped_and_gone_on(&(Arc::new(whole.clone()) as Arc<dyn Disk>)).unwrap();
+    assert!(visible(whole.memory.files()) == undisturbed().files);
+    let log = whole.log();
+    let checkpoint = folder().join("checkpoint");
+    for what in ["rename", "read", "remove file"] {
+        assert!(log.contains(&(what, checkpoint.clone())), "no call of `{what}` for the checkpoint");
+    }
+    for (call, asked) in log.iter().enumerate() {
+        let plan = Plan { call, lasting: call / 4 % 2 == 0, fault: Fault::ERRORS[call % 4] };
+        let what = format!("{plan:?}, {asked:?}");
+        let disk = Faulty::new(Memory::default(), Some(plan));
+        let outcome = stopped_and_gone_on(&(Arc::new(disk.clone()) as Arc<dyn Disk>));
+        let mut left = visible(disk.memory.files());
+        left.remove(&checkpoint);
+        nothing_half_written(&left, &what);
+        if let Err(error) = outcome {
+            clean(&Failure::from(error), asked, &what);
+        }
+        stopped_and_gone_on(&disk.repaired()).unwrap_or_else(|error| panic!("{what}: not repaired: {error}"));
+        assert!(visible(disk.memory.files()) == undisturbed().files, "{what}: other bytes after the repair");
+    }
 }
 
 /// A disk that keeps nothing but what it was asked to keep loses its power at every call.

@@ -5,11 +5,15 @@ use super::within::folder;
 use super::{experiment, file, files, mutate, somewhere};
 use crate::memory::Memory;
 use skilltree::backend::cpu::CpuBackend;
+use skilltree::experiment::checkpoint::Checkpoint;
 use skilltree::experiment::result::{LearnerResult, decode, encode};
+use skilltree::experiment::run::RunError;
 use skilltree::experiment::train::train;
 use skilltree::record::disk::Disk;
+use skilltree::record::failures::read_failures;
 use skilltree::record::manifest::Manifest;
 use skilltree::record::places::read_places;
+use skilltree::record::sweep::read_sweep;
 use skilltree::record::tables::{parse_evaluations, parse_trials};
 use skilltree::record::trajectories::read_trajectories;
 use skilltree::record::weights::read_weights;
@@ -34,6 +38,33 @@ fn parts() {
         other => Ok(other.is_ok()),
     };
     campaign("parts", |dice| mutate::bytes(dice, &seeds), read).conclude("parts");
+}
+
+/// A part whose frame vouches for nonsense: whoever goes on from there refuses it, or takes what can be taken.
+#[test]
+fn vouched_parts() {
+    let seeds = [encode(&results()), encode(&results()[..1])];
+    let experiment = experiment();
+    let read = |input: &[u8]| {
+        let disk: Arc<dyn Disk> = Arc::new(Memory::default());
+        let mut run = experiment.open(&disk, &folder()).unwrap();
+        run.commit_part("2-of-2_arm0-seed0_arm0-seed1", input).unwrap();
+        drop(run);
+        Ok(experiment.run(&disk, &folder()).is_ok())
+    };
+    campaign("vouched_parts", |dice| mutate::bytes(dice, &seeds), read).conclude("vouched_parts");
+}
+
+/// The content of a checkpoint, as if its frame vouched for it.
+#[test]
+fn checkpoints() {
+    let experiment = experiment();
+    let disk: Arc<dyn Disk> = Arc::new(Memory::default());
+    assert!(matches!(experiment.stop(&disk, &folder()), Err(RunError::Stopped { .. })));
+    let seed = experiment.open(&disk, &folder()).unwrap().read_checkpoint().unwrap();
+    let seeds = [seed.expect("a checkpoint")];
+    let read = |input: &[u8]| Ok(Checkpoint::read(input, &experiment.plan, &experiment.groups).is_ok());
+    campaign("checkpoints", |dice| mutate::bytes(dice, &seeds), read).conclude("checkpoints");
 }
 
 #[test]
@@ -67,11 +98,24 @@ fn weights() {
 /// The JSON files of a run folder: each reader sees all of them.
 #[test]
 fn json() {
-    let seeds = ["manifest.json", "places.json", "trajectories.json"].map(file);
+    let sweep = r#"{"axes":[{"key":"skill.dock.max_steps","label":"steps","scale":"linear","values":[5,10]},
+        {"key":"world","label":"world","scale":"list","values":["a","b"]}],
+        "points":[[5,"a"],[5,"b"],[10,"a"]],"design":"grid"}"#;
+    assert!(read_sweep(sweep.as_bytes(), somewhere()).is_ok());
+    let transition = r#"{"taught":true,"lesson":3,"mirrored":false,"step":2,"child":"move+12","record":[1,2],
+        "inputs":[0.5],"q":[0.25,"NaN"],"target":"inf"}"#;
+    let failures = format!(
+        r#"[{{"arm":"a","point":0,"seed":1,"skill":"dock","trial":7,"what":"w","transition":{transition},"weight":null}}]"#
+    );
+    assert!(read_failures(failures.as_bytes(), somewhere()).is_ok());
+    let mut seeds = ["manifest.json", "places.json", "trajectories.json"].map(file).to_vec();
+    seeds.extend([sweep.as_bytes().to_vec(), failures.into_bytes()]);
     let read = |input: &[u8]| {
         let manifest = Manifest::parse(input, somewhere()).is_ok();
         let places = read_places(input, somewhere()).is_ok();
-        Ok(manifest | places | read_trajectories(input, somewhere()).is_ok())
+        let sweep = read_sweep(input, somewhere()).is_ok();
+        let failures = read_failures(input, somewhere()).is_ok();
+        Ok(manifest | places | sweep | failures | read_trajectories(input, somewhere()).is_ok())
     };
     campaign("json", |dice| mutate::text(dice, &seeds), read).conclude("json");
 }

@@ -34,6 +34,16 @@ impl Observer for Nobody {
     fn committed(&mut self, _: usize) {}
 }
 
+struct Impatient;
+
+impl Observer for Impatient {
+    fn trials(&mut self, _: u64) {}
+    fn committed(&mut self, _: usize) {}
+    fn stop(&mut self) -> bool {
+        true
+    }
+}
+
 impl Experiment {
     pub(crate) fn tiny() -> Self {
         let config = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/docking.toml");
@@ -50,6 +60,15 @@ impl Experiment {
 
     /// What the program does between reading the config and reporting: a learner is a cohort, so that there are parts.
     pub(crate) fn run(&self, disk: &Arc<dyn Disk>, dir: &Path) -> Result<(), RunError> {
+        self.watched(disk, dir, &mut Nobody)
+    }
+
+    /// As [`Experiment::run`], but told to stop as soon as a learner has begun: a checkpoint is left.
+    pub(crate) fn stop(&self, disk: &Arc<dyn Disk>, dir: &Path) -> Result<(), RunError> {
+        self.watched(disk, dir, &mut Impatient)
+    }
+
+    fn watched(&self, disk: &Arc<dyn Disk>, dir: &Path, observer: &mut dyn Observer) -> Result<(), RunError> {
         let folder = self.open(disk, dir)?;
         if folder.state() == State::Complete {
             return Ok(());
@@ -57,7 +76,7 @@ impl Experiment {
         let mut backend = CpuBackend::new(1, None).map_err(RunError::Backend)?;
         let provenance = Provenance { seeds: self.plan.seeds.clone(), ..Provenance::default() };
         let options = Options { cohort: Some(1), ..Options::default() };
-        run(&self.plan, &self.groups, folder, &mut backend, options, provenance, &mut Nobody)
+        run(&self.plan, &self.groups, folder, &mut backend, options, provenance, observer)
     }
 }
 
