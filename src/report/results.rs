@@ -5,12 +5,10 @@ use super::claims::{self, Claim};
 use super::summary::{self, Diverged, Summary};
 use super::sweep::Swept;
 use super::training::{self, Training};
+use crate::record::failures::failures_of;
 use crate::record::sweep::{self, read_sweep};
-use crate::record::{FinishedRun, RecordError, tables};
+use crate::record::{Failure, FinishedRun, RecordError, tables};
 use std::path::Path;
-
-/// File name of the learners that diverged.
-const FAILURES: &str = "failures.json";
 
 /// What tables and figures of learning are made from.
 #[derive(Debug)]
@@ -64,9 +62,7 @@ fn table<T: Default>(
     Ok(parse(bytes, &run.dir().join(file))?)
 }
 
-/// Learners that diverged; most runs have none, and no file.
 fn diverged(run: &FinishedRun) -> Result<Vec<Diverged>, RecordError> {
-    let Some(bytes) = run.content(FAILURES)? else { return Ok(Vec::new()) };
-    let path = run.dir().join(FAILURES);
-    serde_json::from_slice(&bytes).map_err(|error| RecordError::damaged(&path, error.to_string()))
+    let told = |Failure { arm, point, seed, skill, trial, .. }| Diverged { arm, point, seed, skill, trial };
+    Ok(failures_of(run)?.into_iter().map(told).collect())
 }
