@@ -89,10 +89,7 @@ pub fn load_record(learner: &Learner<'_>, scratch: &mut Scratch, step: u32) {
     let offset = LESSON_HEADER as u32 + step * words;
     let at = (learner.cursor.replay_lesson + offset) as usize;
     let source: &[u32] = if learner.cursor.replay_taught == 1 { &learner.shared.bank } else { learner.lessons };
-    let source = &source[at..at + words as usize];
-    for word in 0..words as usize {
-        scratch.record[word] = source[word];
-    }
+    scratch.record[..words as usize].copy_from_slice(&source[at..at + words as usize]);
 }
 
 /// A set of children, or that of their mirror images.

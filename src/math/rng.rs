@@ -158,11 +158,8 @@ pub fn roll(stream: Stream) -> Dice {
 #[inline(always)]
 pub fn bearing_words(x: &[u32], y: &[u32], z: &[u32], w: &[u32]) -> [u32; LANES] {
     let mut words = [0; LANES];
-    for i in 0..6 {
-        words[i] = x[i];
-        words[6 + i] = y[i];
-        words[12 + i] = z[i];
-        words[18 + i] = w[i];
+    for (block, drawn) in words.chunks_exact_mut(6).zip([x, y, z, w]) {
+        block.copy_from_slice(&drawn[..6]);
     }
     words
 }
