@@ -60,7 +60,7 @@ fn a_tree_that_is_stopped_at_every_turn_leaves_the_same() {
     let dir = parent.path().join("stopped");
     let (mut stops, mut reached) = (0, 0);
     loop {
-        // A test of a whole cohort is not saved half done, so some attempts have to be longer than it takes.
+        // The end asks once for each learner and is done in one go, so some attempts have to be longer than it takes.
         let (outcome, trials) = attempt(&plan, &all, &dir, stops, 1 + stops * 7 % 11 + stops / 10);
         // Nothing that was done is done again: the first look is as far as the last one was.
         assert!(trials.get(1).is_none_or(|first| *first >= reached), "{trials:?} after {reached}");
@@ -73,7 +73,7 @@ fn a_tree_that_is_stopped_at_every_turn_leaves_the_same() {
         assert!(stops < 2000, "it never ends");
     }
     println!("{stops} stops");
-    assert!(stops > 20, "{stops}");
+    assert!(stops > 15, "{stops}");
     for arm in NAMES {
         let (found, expected) = (left(&dir, arm), left(&whole, arm));
         let differs: Vec<&String> = expected.keys().filter(|name| found.get(*name) != expected.get(*name)).collect();
