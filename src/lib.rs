@@ -66,7 +66,7 @@
 //! | run folders | [`record`] |
 //! | arms x points x seeds -> cohorts -> results | [`experiment`] |
 //! | statistics, figures, the page | [`report`], which reads run folders only |
-//! | rates beside the machine's limits | [`bench`] |
+//! | rates beside the machine's limits | [`mod@bench`] |
 //! | commands | [`cli`] |
 //!
 //! Tests enforce the twins and the direction.

@@ -77,7 +77,7 @@ fn measure(
     samples: u32,
     note: &mut dyn FnMut(&str),
 ) -> Result<Measured, BenchError> {
-    let mut meter = Meter::new()?;
+    let mut meter = Meter::default();
     let mut measured = Measured::new();
     for task in tasks {
         note(&format!("{}: {}", task.name(), task.about()));

@@ -74,8 +74,7 @@ impl Limit {
 /// Measures limits; keeps the memory that it needs for that.
 #[derive(Debug)]
 pub struct Meter {
-    /// The instructions with which each limit was fastest, in the order of [`Limit::ALL`].
-    fastest: [Instructions; Limit::ALL.len()],
+    instructions: Vec<Instructions>,
     memory: Vec<Line>,
 }
 
@@ -89,46 +88,36 @@ const NEAR: usize = 4 << 10;
 const FAR: usize = 64 << 10;
 const ALL: usize = 32 << 20;
 
-impl Meter {
-    /// Finds out which of the machine's instruction sets is the fastest at each limit.
-    ///
-    /// # Errors
-    /// Those of [`Meter::rate`].
-    pub fn new() -> Result<Self, BenchError> {
-        let mut meter =
-            Self { fastest: [Instructions::Baseline; Limit::ALL.len()], memory: vec![Line([1.0; 16]); ALL / 16] };
-        for limit in Limit::ALL {
-            let mut best = 0.0;
-            for instructions in Instructions::all() {
-                let rates = [meter.measure(limit, instructions)?, meter.measure(limit, instructions)?];
-                let rate = rates[0].max(rates[1]);
-                if rate > best {
-                    best = rate;
-                    meter.fastest[limit as usize] = instructions;
-                }
-            }
-        }
-        Ok(meter)
+impl Default for Meter {
+    fn default() -> Self {
+        Self { instructions: Instructions::all(), memory: vec![Line([1.0; 16]); ALL / 16] }
     }
+}
 
-    /// One measurement of some 10 ms: operations or bytes per CPU-second of one thread.
+impl Meter {
+    /// One measurement of some 10 ms: operations or bytes per CPU-second of one thread, by the fastest of the machine's
+    /// instruction sets.
     ///
     /// # Errors
     /// Those of timing.
     pub fn rate(&mut self, limit: Limit) -> Result<f64, BenchError> {
-        self.measure(limit, self.fastest[limit as usize])
+        let mut best = 0.0_f64;
+        for number in 0..self.instructions.len() {
+            best = best.max(self.measure(limit, self.instructions[number])?);
+        }
+        Ok(best)
     }
 
     fn measure(&mut self, limit: Limit, instructions: Instructions) -> Result<f64, BenchError> {
         let memory: &mut [f32] = bytemuck::cast_slice_mut(&mut self.memory);
         let (count, span) = timed(|| {
             Ok(match limit {
-                Limit::MultiplyAdd => probes::run_multiply_add(instructions, 1 << 20),
-                Limit::CompareSelect => probes::run_compare_select(instructions, 1 << 19),
-                Limit::NearRead => probes::run_read(instructions, &memory[..NEAR], 1 << 16),
-                Limit::NearUpdate => probes::run_update(instructions, &mut memory[..NEAR], 1 << 16),
-                Limit::FarRead => probes::run_read(instructions, &memory[..FAR], 1 << 12),
-                Limit::FarUpdate => probes::run_update(instructions, &mut memory[..FAR], 1 << 12),
+                Limit::MultiplyAdd => probes::run_multiply_add(instructions, 1 << 19),
+                Limit::CompareSelect => probes::run_compare_select(instructions, 1 << 18),
+                Limit::NearRead => probes::run_read(instructions, &memory[..NEAR], 1 << 15),
+                Limit::NearUpdate => probes::run_update(instructions, &mut memory[..NEAR], 1 << 15),
+                Limit::FarRead => probes::run_read(instructions, &memory[..FAR], 1 << 11),
+                Limit::FarUpdate => probes::run_update(instructions, &mut memory[..FAR], 1 << 11),
                 Limit::MemoryRead => probes::run_read(instructions, memory, 1),
                 Limit::MemoryUpdate => probes::run_update(instructions, memory, 1),
             })
