@@ -132,9 +132,13 @@ fn disturbed(plan: Plan) {
     let harmless = matches!(plan.fault, Fault::Short | Fault::Interrupted);
     // Nothing hangs on what is only tidied up.
     let tidying = call.0.starts_with("remove") || call.0 == "list" && left.contains_key(&folder().join(Manifest::NAME));
+    // A result of an earlier attempt is only looked at to save the writing of it again.
+    let given = ["config.toml", "world.toml", Manifest::NAME].map(|name| folder().join(name));
+    let result = undisturbed().files.contains_key(&call.1) && !in_parts(&call.1) && !given.contains(&call.1);
+    let sparing = ["open", "read"].contains(&call.0) && result;
     match outcome {
         Ok(()) => {
-            assert!(harmless || tidying, "{what}: no error");
+            assert!(harmless || tidying || sparing, "{what}: no error");
             let results: Files = left.into_iter().filter(|(path, _)| !in_parts(path)).collect();
             assert!(results == undisturbed().files, "{what}: other results");
         }
