@@ -12,13 +12,13 @@ use crate::step::step;
 use bytemuck::Zeroable;
 use rayon::prelude::*;
 use std::ops::Range;
-use std::time::{Duration, Instant};
 
 /// Quanta of one learner between two looks at the clock: some 10 ms.
 const QUANTA: u32 = 16_384;
 
-/// Work of one call of [`Backend::advance`].
-const TURN: Duration = Duration::from_millis(500);
+/// Learners for each thread that one call of [`Backend::advance`] moves: some tenths of a second. A number and not a
+/// time, for where a machine stands still for a while, none would have moved.
+const TURN: usize = 32;
 
 /// Learners that train together: few, so that finished ones are committed early.
 const COHORT: usize = 32;
@@ -188,20 +188,18 @@ impl Backend for CpuBackend {
             ..Dispatch::zeroed()
         };
         let shared = &cohort.shared;
-        let begun = Instant::now();
+        // The others' turn comes with a later call, when these have reached the stop.
+        let turn = TURN * self.pool.current_num_threads();
+        let waiting = cohort.cursors.iter().enumerate().filter(|(_, cursor)| !stop.holds(cursor));
+        let end = waiting.take(turn).last().map_or(0, |(last, _)| last + 1);
         self.pool.install(|| {
-            cohort
-                .cursors
+            cohort.cursors[..end]
                 .par_iter_mut()
                 .zip(cohort.settings.par_chunks(cohort.skills))
                 .zip(cohort.nets.par_chunks_mut(cohort.nets_stride))
                 .zip(cohort.lessons.par_chunks_mut(cohort.lessons_stride))
                 .zip(cohort.rows.par_chunks_mut(cohort.rows_stride))
                 .for_each(|((((cursor, settings), nets), lessons), rows)| {
-                    // The others' turn comes with the next call, when these have reached the stop.
-                    if begun.elapsed() >= TURN {
-                        return;
-                    }
                     let mut learner = Learner { shared, settings, cursor, nets, lessons, rows };
                     run_advance(instructions, &mut learner, &dispatch);
                 });

@@ -80,7 +80,7 @@ impl Backend for Poisoner {
 }
 
 /// Untaught docking in a small world: a millisecond for each learner.
-fn plan(seeds: &str) -> Plan {
+pub(crate) fn plan(seeds: &str) -> Plan {
     let set = [
         "world=../tests/support/small.toml",
         "arms=['untaught-adam']",
@@ -97,7 +97,7 @@ fn plan(seeds: &str) -> Plan {
     load(&path, &Overrides { set, seeds: Some(seeds.to_owned()), ..Overrides::default() }).expect("a plan")
 }
 
-fn only_group(plan: &Plan) -> Group {
+pub(crate) fn only_group(plan: &Plan) -> Group {
     let mut groups = groups(plan).expect("a group");
     assert_eq!(groups.len(), 1);
     groups.remove(0)

@@ -4,6 +4,7 @@
 mod failures;
 #[path = "../support/mod.rs"]
 mod support;
+mod turns;
 
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -239,13 +240,17 @@ fn parts_of_another_program_are_not_mixed_in() {
     let dir = TempDir::new().unwrap();
     let out = dir.path().join("run");
     let mut child = start(&out, &["--cohort", "2"]);
-    let parts = || fs::read_dir(out.join("parts")).map_or(0, |parts| parts.count());
-    until(&mut child, || parts() > 1);
+    // What is being written has another name until it is whole.
+    let parts = || {
+        let names = fs::read_dir(out.join("parts")).into_iter().flatten().map(|entry| entry.unwrap().path());
+        names.filter(|path| !path.to_string_lossy().ends_with("-tmp")).collect::<Vec<_>>()
+    };
+    until(&mut child, || parts().len() > 1);
     child.kill().unwrap();
     child.wait().unwrap();
     let refused = skilltree(dir.path()).args(["report", "run"]).output().unwrap();
     assert!(text(&refused).contains(" of 20 learners are finished"), "{}", text(&refused));
-    let part = fs::read_dir(out.join("parts")).unwrap().next().unwrap().unwrap().path();
+    let part = parts().remove(0);
     let own = fs::read(&part).unwrap();
     let content = &own[12 + own[8] as usize..own.len() - 40];
     fs::write(&part, framed("skilltree 0.0.9, format 2, plan 0", content)).unwrap();
