@@ -235,7 +235,7 @@ fn q_values_match_plain_f64_nets() {
         for _ in 0..200 {
             let mut scratch = scratch_of(&made_up(&mut next));
             encode(&bench.shared, &mut scratch, &bench.shared.skills[0], false);
-            forward(&bench.nets, &mut scratch, &bench.shared.skills[0], 0);
+            forward(&bench.nets, &mut scratch, &bench.shared.skills[0], &bench.settings[0], 0);
             let x = inputs_of(&scratch.record);
             for (i, (found, exact)) in scratch.inputs.iter().zip(&x).enumerate() {
                 assert!((f64::from(*found) - exact).abs() < 1.0e-6, "input {i}: {found} for {exact}");
@@ -261,7 +261,9 @@ fn one_replayed_transition_descends_the_gradient() {
     // A large rate, because the change of a weight is exact only next to what it is added to.
     let mut next = random(4);
     for (child, reward) in [(0, 90.0), (1, -70.0), (2, 20.0), (3, 0.0), (4, -99.0), (5, 60.0)] {
-        let set = ["learning.optimiser=\"sgd\"", "learning.momentum=0.0", "learning.hidden=20", "learning.init=0.3"];
+        let hidden = if child % 2 == 0 { 20 } else { 12 };
+        let units = format!("learning.hidden={hidden}");
+        let set = ["learning.optimiser=\"sgd\"", "learning.momentum=0.0", &units, "learning.init=0.3"];
         let mut bench = Bench::new(&set);
         bench.settings[0].rate = 256.0;
         bench.settings[0].beta1 = 0.0;
@@ -277,12 +279,12 @@ fn one_replayed_transition_descends_the_gradient() {
         let found: Vec<f64> = (0..words).map(|i| -change(i) / 256.0).collect();
         // The output bias stands in the first word of its row; the rest of it, and lanes without a unit, keep out.
         for (i, found) in found.iter().enumerate() {
-            let used = i % LANES < 20 && i <= words - LANES;
+            let used = i % LANES < hidden && i <= words - LANES;
             assert!(used || *found == 0.0, "word {i} is not in use and changed");
         }
         let mut expected = slopes;
         expected[words - LANES + 1..].fill(0.0);
-        (0..words).filter(|i| i % LANES >= 20).for_each(|i| expected[i] = 0.0);
+        (0..words).filter(|i| i % LANES >= hidden).for_each(|i| expected[i] = 0.0);
         // Differences of f64 are good to some 1e-11; a slope of zero is exact.
         let x = inputs_of(&step.senses);
         (0..52).filter(|i| x[*i] == 0.0).for_each(|i| expected[i * LANES..(i + 1) * LANES].fill(0.0));
@@ -305,7 +307,7 @@ fn momentum_carries_the_last_change_on() {
     let skill = bench.shared.skills[0];
     let mut scratch = scratch_of(&made_up(&mut next));
     encode(&bench.shared, &mut scratch, &skill, false);
-    forward(&bench.nets, &mut scratch, &skill, 0);
+    forward(&bench.nets, &mut scratch, &skill, &bench.settings[0], 0);
     let start = Net::of(&bench, 2);
     backward(&mut bench.nets, &mut scratch, &skill, &bench.settings[0], 0, 2, 0.5, bench.settings[0].rate);
     let one = Net::of(&bench, 2);
@@ -322,22 +324,24 @@ fn momentum_carries_the_last_change_on() {
 
 #[test]
 fn adam_follows_the_papers_formula() {
-    adam_follows_the_formula("adam", "1e-8", "0.0015");
+    adam_follows_the_formula("adam", "32", "1e-8", "0.0015");
+    adam_follows_the_formula("adam", "12", "1e-8", "0.0015");
     // An epsilon as large as the gradients: a higher rate keeps the changes above the weights' last places.
-    adam_follows_the_formula("adam", "1e-3", "0.05");
+    adam_follows_the_formula("adam", "32", "1e-3", "0.05");
 }
 
 /// The same with the mean of the squared gradient over the weights of one input, as Adam-mini has it over its blocks.
 #[test]
 fn adam_of_rows_follows_the_formula_with_the_mean_square_of_each_row() {
-    adam_follows_the_formula("adam-rows", "1e-8", "0.0015");
-    adam_follows_the_formula("adam-rows", "1e-3", "0.05");
+    adam_follows_the_formula("adam-rows", "32", "1e-8", "0.0015");
+    adam_follows_the_formula("adam-rows", "12", "1e-8", "0.0015");
+    adam_follows_the_formula("adam-rows", "32", "1e-3", "0.05");
 }
 
-fn adam_follows_the_formula(optimiser: &str, epsilon: &str, rate: &str) {
-    let of_optimiser = format!("learning.optimiser={optimiser}");
+fn adam_follows_the_formula(optimiser: &str, hidden: &str, epsilon: &str, rate: &str) {
+    let (of_optimiser, of_hidden) = (format!("learning.optimiser={optimiser}"), format!("learning.hidden={hidden}"));
     let (of_epsilon, of_rate) = (format!("learning.epsilon={epsilon}"), format!("learning.rate={rate}"));
-    let mut bench = Bench::new(&[&of_optimiser, "learning.init=0.3", &of_epsilon, &of_rate]);
+    let mut bench = Bench::new(&[&of_optimiser, &of_hidden, "learning.init=0.3", &of_epsilon, &of_rate]);
     let (epsilon, given): (f32, f32) = (epsilon.parse().expect("a number"), rate.parse().expect("a number"));
     let settings = bench.settings[0];
     let (rate, beta1, beta2) = (f64::from(settings.rate), f64::from(settings.beta1), f64::from(settings.beta2));
@@ -363,9 +367,9 @@ fn adam_follows_the_formula(optimiser: &str, epsilon: &str, rate: &str) {
             mean[i] = beta1 * mean[i] + (1.0 - beta1) * slope;
             let row = &slopes[i / LANES * LANES..slopes.len().min((i / LANES + 1) * LANES)];
             // The last row has a single weight, the output's bias.
-            let weights = if i / LANES + 1 == bench.rows_of_net() { 1 } else { LANES };
+            let weights = if i / LANES + 1 == bench.rows_of_net() { 1 } else { settings.hidden };
             let own = slope * slope;
-            let of_row = row.iter().map(|slope| slope * slope).sum::<f64>() / weights as f64;
+            let of_row = row.iter().map(|slope| slope * slope).sum::<f64>() / f64::from(weights);
             let squared = if optimiser == "adam" { own } else { of_row };
             square[i] = beta2 * square[i] + (1.0 - beta2) * squared;
             net.0[i] -= corrected * mean[i] / (square[i] + epsilon2).sqrt();

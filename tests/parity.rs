@@ -216,8 +216,8 @@ fn faults_of_advance_are_named() {
             // One last place in one lane.
             (
                 "qnet/forward.wgsl",
-                "let activation = squash(sum);",
-                "var activation = squash(sum);
+                "activation = squash(sum);",
+                "activation = squash(sum);
                 if lane == 5u && base == 2u * dispatch.nets_stride {
                     activation = bitcast<f32>(bitcast<u32>(activation) + 1u);
                 }",

@@ -76,6 +76,9 @@ const OWN_COMMENTS: &[(&str, &str)] = &[
         "evaluate.wgsl",
         "// Results stand by the place of the learner in this dispatch: a test is read back part by part.",
     ),
+    ("qnet/backward.wgsl", "// A lane without a hidden unit has no rows."),
+    ("qnet/backward.wgsl", "// A number that the compiler does not know keeps the sums in their lanes."),
+    ("qnet/forward.wgsl", "// The last one stands in for who is missing beside it."),
     (
         "skill/observe.wgsl",
         "// Behind `black_box` the compiler does not keep the keys of `roll` in memory on every step for this one.",
@@ -84,6 +87,9 @@ const OWN_COMMENTS: &[(&str, &str)] = &[
 
 /// Functions of a Rust twin alone, and why.
 const OWN_FUNCTIONS: &[(&str, &str)] = &[
+    // A lane has one unit's sum and weights.
+    ("qnet/forward.wgsl", "added"),
+    ("qnet/backward.wgsl", "units"),
     // A workgroup draws a lane's words in that lane.
     ("math/rng.wgsl", "draws"),
     // It is made when the program is compiled; a lane turns its own ray.

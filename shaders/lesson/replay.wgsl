@@ -108,7 +108,7 @@ fn replay_step(lane: u32, s: u32, base: u32) {
         let allowed = reflected(skill, offered, mirrored);
         load_record(lane, step);
         encode(lane, skill, mirrored);
-        forward(lane, skill, base);
+        forward(lane, skill, s, base);
         let outlook = weigh(lane, skills[skill].children, allowed, sharpness(s, cursor.trial));
         if open {
             cursor.replay_open = 0u;

@@ -3,7 +3,6 @@
 const OPTIMISER_SGD: u32 = 0u;
 const OPTIMISER_ADAM: u32 = 1u;
 const OPTIMISER_ADAM_ROWS: u32 = 2u;
-const LANE_SHARE: f32 = 0.03125f;
 
 const CLOCK_SECOND: u32 = 16u;
 
@@ -57,8 +56,8 @@ fn paces(
     partials[0][lane] = errors.hidden * errors.hidden;
     partials[1][lane] = own_activation * own_activation;
     lanes_sums(lane, 2u);
-    let hidden_share = partials[0][0] * LANE_SHARE;
-    let activation = partials[1][0] * LANE_SHARE;
+    let hidden_share = partials[0][0] * settings[s].unit_share;
+    let activation = partials[1][0] * settings[s].unit_share;
     let count = skills[skill].inputs;
     let last = count + 1u + skills[skill].outputs;
     let rest2 = 1.0f - settings[s].beta2;
@@ -84,16 +83,24 @@ fn learning_rate(s: u32, trial: u32) -> f32 {
     return settings[s].rate * (1.0f - settings[s].rate_fall * f32(risen));
 }
 
-fn backward(lane: u32, skill: u32, s: u32, base: u32, child: u32, delta: f32, pace: f32) {
-    let number = select(child, 0u, skills[skill].nets == 1u);
-    let output = child - number;
+fn learn(
+    lane: u32,
+    units: u32,
+    skill: u32,
+    s: u32,
+    base: u32,
+    number: u32,
+    output: u32,
+    found: Errors,
+    pace: f32,
+) {
     let net = net_of(skill, base, number);
-    let rows = skills[skill].rows;
-    let slab = rows * LANES;
+    let slab = skills[skill].rows * LANES;
+    // A lane without a hidden unit has no rows.
+    let rows = select(0u, skills[skill].rows, lane < units);
     let beta1 = settings[s].beta1;
     let beta2 = settings[s].beta2;
     let epsilon2 = settings[s].epsilon2;
-    let found = errors(lane, skill, net, number, child, delta);
     if settings[s].optimiser == OPTIMISER_SGD {
         for (var row = 0u; row < rows; row++) {
             let at = net + row * LANES + lane;
@@ -122,7 +129,7 @@ fn backward(lane: u32, skill: u32, s: u32, base: u32, child: u32, delta: f32, pa
             let chosen = select(0.0f, 1.0f, lane == output);
             for (var row = 0u; row < rows; row++) {
                 let at = net + row * LANES + lane;
-                let above = select(chosen, hidden[number][lane], row + 1u < rows);
+                let above = select(chosen, hidden[number][lane], row + 1u < skills[skill].rows);
                 let alike = select(above, found.hidden, row <= count);
                 let factor = rest1 * row_factor[row];
                 let mean = flush(beta1 * nets[at + slab] + factor * alike);
@@ -142,6 +149,13 @@ fn backward(lane: u32, skill: u32, s: u32, base: u32, child: u32, delta: f32, pa
             }
         }
     }
+}
+
+fn backward(lane: u32, skill: u32, s: u32, base: u32, child: u32, delta: f32, pace: f32) {
+    let number = select(child, 0u, skills[skill].nets == 1u);
+    let net = net_of(skill, base, number);
+    let found = errors(lane, skill, net, number, child, delta);
+    learn(lane, lanes_of(settings[s].hidden), skill, s, base, number, child - number, found, pace);
     // The output bias and the clocks are read by other lanes than the one that wrote them.
     storageBarrier();
     workgroupBarrier();

@@ -1,32 +1,48 @@
 // Q-values of every child.
 
+const FEW: u32 = 16u;
+
 var<workgroup> hidden: array<array<f32, LANES>, MAX_CHILDREN>;
 var<workgroup> q: array<f32, MAX_CHILDREN>;
+
+fn lanes_of(hidden_units: u32) -> u32 {
+    return select(LANES, FEW, hidden_units <= FEW);
+}
 
 fn net_of(skill: u32, base: u32, net: u32) -> u32 {
     return base + skills[skill].nets_offset + net * 3u * skills[skill].rows * LANES;
 }
 
-fn forward(lane: u32, skill: u32, base: u32) {
+fn layer(lane: u32, units: u32, skill: u32, base: u32) {
     let count = skills[skill].inputs;
     let outputs = skills[skill].outputs;
-    let children = skills[skill].children;
     for (var number = 0u; number < skills[skill].nets; number++) {
         let net = net_of(skill, base, number);
-        var sum = nets[net + count * LANES + lane];
-        for (var row = 0u; row < count; row++) {
-            sum = sum + nets[net + row * LANES + lane] * inputs[row];
+        var activation = 0.0f;
+        if lane < units {
+            var sum = nets[net + count * LANES + lane];
+            for (var row = 0u; row < count; row++) {
+                let x = inputs[row];
+                if x != 0.0f {
+                    sum = sum + nets[net + row * LANES + lane] * x;
+                }
+            }
+            activation = squash(sum);
         }
-        let activation = squash(sum);
         hidden[number][lane] = activation;
         for (var output = 0u; output < outputs; output++) {
             partials[number + output][lane] = activation * nets[net + (count + 1u + output) * LANES + lane];
         }
     }
+}
+
+fn forward(lane: u32, skill: u32, s: u32, base: u32) {
+    let children = skills[skill].children;
+    layer(lane, lanes_of(settings[s].hidden), skill, base);
     lanes_sums(lane, children);
     if lane < children {
         let net = select(lane, 0u, skills[skill].nets == 1u);
-        let row = count + 1u + outputs;
+        let row = skills[skill].inputs + 1u + skills[skill].outputs;
         let bias = nets[net_of(skill, base, net) + row * LANES + (lane - net)];
         q[lane] = squash(partials[lane][0] + bias);
     }

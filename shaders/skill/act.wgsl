@@ -45,7 +45,7 @@ fn think(lane: u32, base: u32, n: u32) {
         consult(lane, n);
     } else {
         encode(lane, n, skills[n].mirrored == 1u);
-        forward(lane, n, base);
+        forward(lane, n, settings_base + n, base);
     }
 }
 

@@ -256,8 +256,8 @@ impl Net {
         let Self { weights, means, rows, .. } = self;
         let slope = |unit: usize| error * weights.output[unit] * (1.0 - hidden[unit] * hidden[unit]);
         let slopes: Vec<f32> = (0..LANES).map(slope).collect();
-        let below = mean_square(&slopes);
-        let above = mean_square(hidden);
+        let below = mean_square(&slopes, settings);
+        let above = mean_square(hidden, settings);
         // The factor that a row's gradient has in common, and the pace at which the row moves.
         let mut pace = |row: usize, factor: f32, alike: f32| {
             let square = settings.beta2 * rows[row] + (1.0 - settings.beta2) * (factor * factor * alike);
@@ -283,9 +283,9 @@ impl Net {
     }
 }
 
-/// Mean of the squares of 32 values.
-fn mean_square(values: &[f32]) -> f32 {
-    tree_sum(values.iter().map(|value| value * value).collect()) * 0.031_25
+/// Mean over the hidden units of their squared values.
+fn mean_square(values: &[f32], settings: &Settings) -> f32 {
+    tree_sum(values.iter().map(|value| value * value).collect()) * settings.unit_share
 }
 
 /// Sum in the lanes' order.

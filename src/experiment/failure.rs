@@ -66,7 +66,7 @@ fn transition(arm: &Arm, cohort: &Cohort, index: usize) -> Transition {
     let mut scratch = Scratch::default();
     load_record(&learner, &mut scratch, step);
     encode(&cohort.shared, &mut scratch, skill, mirrored);
-    forward(learner.nets, &mut scratch, skill, 0);
+    forward(learner.nets, &mut scratch, skill, &settings[number], 0);
     let target = aimed(&learner, LESSON_HEADER as u32 + step * skill.record_words);
     let first = if taught { skill.bank_offset } else { skill.memory_offset };
     let place = (learner.cursor.replay_lesson - first) / skill.lesson_stride;

@@ -114,7 +114,7 @@ pub fn fit(cohort: &Cohort, learner: usize, skill: usize) -> Fit {
         for record in lesson[LESSON_HEADER..].chunks(words).take(lesson[0] as usize) {
             scratch.record[..words].copy_from_slice(record);
             encode(&cohort.shared, &mut scratch, plan, false);
-            forward(nets, &mut scratch, plan, 0);
+            forward(nets, &mut scratch, plan, settings, 0);
             let best = scratch.q[..plan.children as usize].iter().copied().fold(f32::NEG_INFINITY, f32::max);
             seen.push((f64::from(best), lesson[1] == ENDED));
         }

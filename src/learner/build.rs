@@ -250,6 +250,7 @@ fn settings_of(skill: &Skill, arm: &Arm, run_seed: u32, seed: u32) -> Settings {
         noise_light: noise.light,
         noise_compass: noise.compass,
         hidden: learning.hidden,
+        unit_share: 1.0 / learning.hidden as f32,
         init: learning.init,
         gamma: learning.gamma,
         lambda: learning.lambda,

@@ -215,6 +215,8 @@ shared! {
         noise_compass: f32,
         /// Hidden units in use.
         hidden: u32,
+        /// 1 / `hidden`.
+        unit_share: f32,
         /// Initial weights lie in plus or minus this.
         init: f32,
         /// Discount factor.

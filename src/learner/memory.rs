@@ -35,6 +35,35 @@ pub struct Learner<'a> {
     pub rows: &'a mut [u32],
 }
 
+/// Inputs that are not 0, in order. The CPU's alone: a workgroup looks at each.
+#[derive(Debug, Clone)]
+pub struct Seen {
+    rows: [u32; MAX_INPUTS],
+    values: [f32; MAX_INPUTS],
+    count: usize,
+}
+
+impl Seen {
+    /// Lists what is not 0. Without a branch, because which bits of light are set is hard to foretell.
+    #[inline(always)]
+    pub fn list(&mut self, inputs: &[f32]) {
+        self.count = 0;
+        for (row, x) in inputs.iter().enumerate() {
+            // No more are listed than there were.
+            self.rows[self.count % MAX_INPUTS] = row as u32;
+            self.values[self.count % MAX_INPUTS] = *x;
+            self.count += usize::from(*x != 0.0);
+        }
+    }
+
+    /// Number and value of each.
+    #[inline(always)]
+    pub fn iter(&self) -> impl Iterator<Item = (usize, f32)> {
+        let count = self.count.min(MAX_INPUTS);
+        self.rows[..count].iter().zip(&self.values[..count]).map(|(row, x)| (*row as usize, *x))
+    }
+}
+
 /// Twin of the shaders' workgroup memory.
 #[derive(Debug, Clone)]
 pub struct Scratch {
@@ -42,6 +71,8 @@ pub struct Scratch {
     pub record: [u32; RECORD_WORDS],
     /// Inputs of the nets.
     pub inputs: [f32; MAX_INPUTS],
+    /// Those that the nets were last asked about, as a list.
+    pub seen: Seen,
     /// Hidden activations of every child's net.
     pub hidden: [Lanes; MAX_CHILDREN],
     /// Q-value of every child.
@@ -63,6 +94,7 @@ impl Default for Scratch {
         Self {
             record: [0; RECORD_WORDS],
             inputs: [0.0; MAX_INPUTS],
+            seen: Seen { rows: [0; MAX_INPUTS], values: [0.0; MAX_INPUTS], count: 0 },
             hidden: [[0.0; LANES]; MAX_CHILDREN],
             q: [0.0; MAX_CHILDREN],
             row_factor: [0.0; MAX_ROWS],

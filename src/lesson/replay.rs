@@ -156,7 +156,7 @@ pub fn replay_step(learner: &mut Learner<'_>, scratch: &mut Scratch, base: u32) 
         let allowed = reflected(skill, offered, mirrored);
         load_record(learner, scratch, step);
         encode(learner.shared, scratch, skill, mirrored);
-        forward(learner.nets, scratch, skill, base);
+        forward(learner.nets, scratch, skill, settings, base);
         let outlook = weigh(scratch, skill.children, allowed, sharpness(settings, learner.cursor.trial));
         if open {
             learner.cursor.replay_open = 0;

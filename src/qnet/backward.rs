@@ -1,6 +1,6 @@
 //! One step of error back-propagation through one child's net (paper, section I, step 2).
 
-use super::forward::net_of;
+use super::forward::{FEW, lanes_of, net_of};
 use crate::learner::layout::{LANES, MAX_CHILDREN, MAX_INPUTS, MAX_ROWS, Settings, SkillPlan};
 use crate::learner::memory::Scratch;
 use crate::math::functions::{flush, reciprocal, reciprocal_sqrt, square_root};
@@ -12,8 +12,6 @@ pub const OPTIMISER_SGD: u32 = 0;
 pub const OPTIMISER_ADAM: u32 = 1;
 /// Adam with one second moment for each row of weights.
 pub const OPTIMISER_ADAM_ROWS: u32 = 2;
-/// 1 / `LANES`.
-const LANE_SHARE: f32 = 0.031_25;
 
 /// Lane of the clock row at which the second moments' decay stands; the first moments' stand from lane 0.
 pub const CLOCK_SECOND: u32 = 16;
@@ -99,9 +97,10 @@ pub fn paces(
         partials[0][lane] = errors.hidden[lane] * errors.hidden[lane];
         partials[1][lane] = activation * activation;
     }
-    lanes_sums(&mut partials, 2);
-    let hidden = partials[0][0] * LANE_SHARE;
-    let activation = partials[1][0] * LANE_SHARE;
+    // A number that the compiler does not know keeps the sums in their lanes.
+    lanes_sums(&mut partials, std::hint::black_box(2));
+    let hidden = partials[0][0] * settings.unit_share;
+    let activation = partials[1][0] * settings.unit_share;
     let count = plan.inputs as usize;
     let last = count + 1 + plan.outputs as usize;
     let rest2 = 1.0 - settings.beta2;
@@ -129,6 +128,104 @@ pub fn learning_rate(settings: &Settings, trial: u32) -> f32 {
     settings.rate * (1.0 - settings.rate_fall * risen as f32)
 }
 
+/// The lanes of a row that are in use, as a value: they are loaded, computed and stored together.
+#[inline(always)]
+fn units<const UNITS: usize>(row: &Lanes) -> [f32; UNITS] {
+    let mut own = [0.0; UNITS];
+    own.copy_from_slice(&row[..UNITS]);
+    own
+}
+
+/// Moves net `number`, of which `UNITS` lanes are in use, so that its output `output` changes by about the errors' delta
+/// times the learning rate `pace`.
+#[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "the twin of a shader function, which has no methods")]
+fn learn<const UNITS: usize>(
+    nets: &mut [f32],
+    scratch: &mut Scratch,
+    skill: &SkillPlan,
+    settings: &Settings,
+    base: u32,
+    (number, output): (u32, u32),
+    found: &Errors,
+    pace: f32,
+) {
+    let net = net_of(skill, base, number);
+    let rows = skill.rows;
+    let slab = rows * LANES as u32;
+    let beta1 = settings.beta1;
+    let beta2 = settings.beta2;
+    let epsilon2 = settings.epsilon2;
+    if settings.optimiser == OPTIMISER_SGD {
+        let (weights, velocities) = nets[net as usize..(net + 2 * slab) as usize].split_at_mut(slab as usize);
+        let weights = weights.as_chunks_mut::<LANES>().0;
+        let velocities = velocities.as_chunks_mut::<LANES>().0;
+        for row in 0..rows as usize {
+            let slope = gradient(scratch, skill, number, output, row as u32, found);
+            let (mut velocity, mut weight) = (units::<UNITS>(&velocities[row]), units::<UNITS>(&weights[row]));
+            for lane in 0..UNITS {
+                velocity[lane] = flush(beta1 * velocity[lane] + pace * slope[lane]);
+                weight[lane] += velocity[lane];
+            }
+            velocities[row][..UNITS].copy_from_slice(&velocity);
+            weights[row][..UNITS].copy_from_slice(&weight);
+        }
+    } else {
+        // Adam (Kingma and Ba, 2015) in its second form, with epsilon under the root: one reciprocal root serves where a
+        // root and a division would.
+        let clock = (base + skill.clock_offset + number) as usize;
+        let first = flush(nets[clock] * beta1);
+        let second = flush(nets[clock + CLOCK_SECOND as usize] * beta2);
+        let rate = pace * square_root(1.0 - second) * reciprocal(1.0 - first);
+        nets[clock] = first;
+        nets[clock + CLOCK_SECOND as usize] = second;
+        let rest1 = 1.0 - beta1;
+        if settings.optimiser == OPTIMISER_ADAM_ROWS {
+            paces(nets, scratch, skill, settings, net, (number, output), found, rate);
+            let count = skill.inputs as usize;
+            let (weights, means) = nets[net as usize..(net + 2 * slab) as usize].split_at_mut(slab as usize);
+            let weights = weights.as_chunks_mut::<LANES>().0;
+            let means = means.as_chunks_mut::<LANES>().0;
+            let mut chosen = [0.0; LANES];
+            chosen[output as usize] = 1.0;
+            for row in 0..rows as usize {
+                let above = if row + 1 < rows as usize { &scratch.hidden[number as usize] } else { &chosen };
+                let alike = if row <= count { &found.hidden } else { above };
+                let factor = rest1 * scratch.row_factor[row];
+                let step = scratch.row_pace[row];
+                let (mut mean, mut weight) = (units::<UNITS>(&means[row]), units::<UNITS>(&weights[row]));
+                for lane in 0..UNITS {
+                    mean[lane] = flush(beta1 * mean[lane] + factor * alike[lane]);
+                    weight[lane] += step * mean[lane];
+                }
+                means[row][..UNITS].copy_from_slice(&mean);
+                weights[row][..UNITS].copy_from_slice(&weight);
+            }
+        } else {
+            let rest2 = 1.0 - beta2;
+            let (weights, moments) = nets[net as usize..(net + 3 * slab) as usize].split_at_mut(slab as usize);
+            let (means, squares) = moments.split_at_mut(slab as usize);
+            let weights = weights.as_chunks_mut::<LANES>().0;
+            let means = means.as_chunks_mut::<LANES>().0;
+            let squares = squares.as_chunks_mut::<LANES>().0;
+            for row in 0..rows as usize {
+                let slope = gradient(scratch, skill, number, output, row as u32, found);
+                let (mut mean, mut square) = (units::<UNITS>(&means[row]), units::<UNITS>(&squares[row]));
+                let mut weight = units::<UNITS>(&weights[row]);
+                for lane in 0..UNITS {
+                    let g = slope[lane];
+                    mean[lane] = flush(beta1 * mean[lane] + rest1 * g);
+                    square[lane] = flush(beta2 * square[lane] + rest2 * (g * g));
+                    weight[lane] += rate * mean[lane] * reciprocal_sqrt(square[lane] + epsilon2);
+                }
+                means[row][..UNITS].copy_from_slice(&mean);
+                squares[row][..UNITS].copy_from_slice(&square);
+                weights[row][..UNITS].copy_from_slice(&weight);
+            }
+        }
+    }
+}
+
 /// Moves the net of `child` so that its output changes by about `delta` times the learning rate `pace`.
 #[inline(always)]
 #[expect(clippy::too_many_arguments, reason = "the twin of a shader function, which has no methods")]
@@ -143,74 +240,12 @@ pub fn backward(
     pace: f32,
 ) {
     let number = if skill.nets == 1 { 0 } else { child };
-    let output = child - number;
     let net = net_of(skill, base, number);
-    let rows = skill.rows;
-    let slab = rows * LANES as u32;
-    let beta1 = settings.beta1;
-    let beta2 = settings.beta2;
-    let epsilon2 = settings.epsilon2;
     let found = errors(nets, scratch, skill, net, number, child, delta);
-    if settings.optimiser == OPTIMISER_SGD {
-        let (weights, velocities) = nets[net as usize..(net + 2 * slab) as usize].split_at_mut(slab as usize);
-        let weights = weights.as_chunks_mut::<LANES>().0;
-        let velocities = velocities.as_chunks_mut::<LANES>().0;
-        for row in 0..rows as usize {
-            let slope = gradient(scratch, skill, number, output, row as u32, &found);
-            for lane in 0..LANES {
-                let g = slope[lane];
-                let velocity = flush(beta1 * velocities[row][lane] + pace * g);
-                velocities[row][lane] = velocity;
-                weights[row][lane] += velocity;
-            }
-        }
+    let own = (number, child - number);
+    if lanes_of(settings.hidden) == FEW {
+        learn::<FEW>(nets, scratch, skill, settings, base, own, &found, pace);
     } else {
-        // Adam (Kingma and Ba, 2015) in its second form, with epsilon under the root: one reciprocal root serves where a
-        // root and a division would.
-        let clock = (base + skill.clock_offset + number) as usize;
-        let first = flush(nets[clock] * beta1);
-        let second = flush(nets[clock + CLOCK_SECOND as usize] * beta2);
-        let rate = pace * square_root(1.0 - second) * reciprocal(1.0 - first);
-        nets[clock] = first;
-        nets[clock + CLOCK_SECOND as usize] = second;
-        let rest1 = 1.0 - beta1;
-        if settings.optimiser == OPTIMISER_ADAM_ROWS {
-            paces(nets, scratch, skill, settings, net, (number, output), &found, rate);
-            let count = skill.inputs as usize;
-            let (weights, means) = nets[net as usize..(net + 2 * slab) as usize].split_at_mut(slab as usize);
-            let weights = weights.as_chunks_mut::<LANES>().0;
-            let means = means.as_chunks_mut::<LANES>().0;
-            let mut chosen = [0.0; LANES];
-            chosen[output as usize] = 1.0;
-            for row in 0..rows as usize {
-                let above = if row + 1 < rows as usize { &scratch.hidden[number as usize] } else { &chosen };
-                let alike = if row <= count { &found.hidden } else { above };
-                let factor = rest1 * scratch.row_factor[row];
-                let step = scratch.row_pace[row];
-                for lane in 0..LANES {
-                    let mean = flush(beta1 * means[row][lane] + factor * alike[lane]);
-                    means[row][lane] = mean;
-                    weights[row][lane] += step * mean;
-                }
-            }
-        } else {
-            let rest2 = 1.0 - beta2;
-            let (weights, moments) = nets[net as usize..(net + 3 * slab) as usize].split_at_mut(slab as usize);
-            let (means, squares) = moments.split_at_mut(slab as usize);
-            let weights = weights.as_chunks_mut::<LANES>().0;
-            let means = means.as_chunks_mut::<LANES>().0;
-            let squares = squares.as_chunks_mut::<LANES>().0;
-            for row in 0..rows as usize {
-                let slope = gradient(scratch, skill, number, output, row as u32, &found);
-                for lane in 0..LANES {
-                    let g = slope[lane];
-                    let mean = flush(beta1 * means[row][lane] + rest1 * g);
-                    let square = flush(beta2 * squares[row][lane] + rest2 * (g * g));
-                    means[row][lane] = mean;
-                    squares[row][lane] = square;
-                    weights[row][lane] += rate * mean * reciprocal_sqrt(square + epsilon2);
-                }
-            }
-        }
+        learn::<LANES>(nets, scratch, skill, settings, base, own, &found, pace);
     }
 }

@@ -1,9 +1,18 @@
 //! Q-values of every child.
 
-use crate::learner::layout::{LANES, MAX_CHILDREN, SkillPlan};
+use crate::learner::layout::{LANES, MAX_CHILDREN, Settings, SkillPlan};
 use crate::learner::memory::Scratch;
 use crate::math::functions::squash;
-use crate::math::lanes::lanes_sums;
+use crate::math::lanes::{Lanes, Partials, lanes_sums};
+
+/// Lanes that do for a net of few hidden units: half of them.
+pub const FEW: usize = 16;
+
+/// Lanes in which a net has hidden units. In the others all is 0, and stays so.
+#[inline(always)]
+pub fn lanes_of(hidden: u32) -> usize {
+    if hidden as usize <= FEW { FEW } else { LANES }
+}
 
 /// Word at which net number `net` stands; its three slabs follow one another.
 #[inline(always)]
@@ -11,35 +20,81 @@ pub fn net_of(skill: &SkillPlan, base: u32, net: u32) -> u32 {
     base + skill.nets_offset + net * 3 * skill.rows * LANES as u32
 }
 
-/// Computes `hidden` and `q` of every child from `inputs`.
+/// The units' sums with one more input. By value, which keeps them in the machine's lanes.
 #[inline(always)]
-pub fn forward(nets: &[f32], scratch: &mut Scratch, skill: &SkillPlan, base: u32) {
+fn added<const UNITS: usize>(sums: [f32; UNITS], weights: &Lanes, x: f32) -> [f32; UNITS] {
+    let mut own = sums;
+    for lane in 0..UNITS {
+        own[lane] = sums[lane] + weights[lane] * x;
+    }
+    own
+}
+
+/// Computes `hidden` of every net, of which `UNITS` lanes are in use, and what its outputs are summed from.
+///
+/// `ABREAST` nets are summed side by side, so that one need not wait for the other's sum. What is 0 is passed over: of
+/// the bits of light few are set.
+#[inline(always)]
+fn layer<const UNITS: usize, const ABREAST: usize>(
+    nets: &[f32],
+    scratch: &mut Scratch,
+    partials: &mut Partials,
+    skill: &SkillPlan,
+    base: u32,
+) {
     let inputs = skill.inputs as usize;
-    let mut partials = [[0.0; LANES]; MAX_CHILDREN];
-    for number in 0..skill.nets as usize {
-        let net = net_of(skill, base, number as u32) as usize;
-        let outputs = skill.outputs as usize;
-        let weights = &nets[net..net + skill.rows as usize * LANES].as_chunks::<LANES>().0[..inputs + 2 + outputs];
-        let mut sum = weights[inputs];
-        for (row, x) in weights[..inputs].iter().zip(&scratch.inputs) {
-            for lane in 0..LANES {
-                sum[lane] += row[lane] * *x;
+    let outputs = skill.outputs as usize;
+    scratch.seen.list(&scratch.inputs[..inputs]);
+    for first in (0..skill.nets).step_by(ABREAST) {
+        // The last one stands in for who is missing beside it.
+        let numbers: [u32; ABREAST] = std::array::from_fn(|beside| (first + beside as u32).min(skill.nets - 1));
+        let weights = numbers.map(|number| {
+            let net = net_of(skill, base, number) as usize;
+            &nets[net..net + skill.rows as usize * LANES].as_chunks::<LANES>().0[..inputs + 2 + outputs]
+        });
+        let mut sums = [[0.0; UNITS]; ABREAST];
+        for beside in 0..ABREAST {
+            sums[beside].copy_from_slice(&weights[beside][inputs][..UNITS]);
+        }
+        for (row, x) in scratch.seen.iter() {
+            for beside in 0..ABREAST {
+                sums[beside] = added(sums[beside], &weights[beside][row], x);
             }
         }
-        for lane in 0..LANES {
-            scratch.hidden[number][lane] = squash(sum[lane]);
-        }
-        for output in 0..outputs {
-            for lane in 0..LANES {
-                partials[number + output][lane] = scratch.hidden[number][lane] * weights[inputs + 1 + output][lane];
+        for beside in 0..ABREAST {
+            let number = numbers[beside] as usize;
+            let mut activations = [0.0; LANES];
+            for lane in 0..UNITS {
+                activations[lane] = squash(sums[beside][lane]);
             }
+            for output in 0..outputs {
+                for lane in 0..UNITS {
+                    partials[number + output][lane] = activations[lane] * weights[beside][inputs + 1 + output][lane];
+                }
+            }
+            scratch.hidden[number] = activations;
         }
     }
+}
+
+/// Computes `hidden` and `q` of every child from `inputs`.
+#[inline(always)]
+pub fn forward(nets: &[f32], scratch: &mut Scratch, skill: &SkillPlan, settings: &Settings, base: u32) {
+    let mut partials = [[0.0; LANES]; MAX_CHILDREN];
+    if lanes_of(settings.hidden) == FEW {
+        layer::<FEW, 2>(nets, scratch, &mut partials, skill, base);
+    } else {
+        layer::<LANES, 1>(nets, scratch, &mut partials, skill, base);
+    }
     lanes_sums(&mut partials, skill.children);
+    let mut sums = [0.0; MAX_CHILDREN];
     for child in 0..skill.children as usize {
         let net = if skill.nets == 1 { 0 } else { child };
-        let row = inputs + 1 + skill.outputs as usize;
+        let row = skill.inputs as usize + 1 + skill.outputs as usize;
         let bias = nets[net_of(skill, base, net as u32) as usize + row * LANES + (child - net)];
-        scratch.q[child] = squash(partials[child][0] + bias);
+        sums[child] = partials[child][0] + bias;
+    }
+    for child in 0..MAX_CHILDREN {
+        scratch.q[child] = squash(sums[child]);
     }
 }

@@ -68,7 +68,7 @@ pub fn think(
         consult(agent, shared, scratch, plan);
     } else {
         encode(shared, scratch, plan, plan.mirrored == 1);
-        forward(nets, scratch, plan, base);
+        forward(nets, scratch, plan, &settings[n as usize], base);
     }
 }
 

@@ -28,7 +28,7 @@ fn look(bench: &Bench, root: usize, next: &mut impl FnMut() -> f64) -> (skilltre
     let record = made_up(next);
     let mut scratch = scratch_of(&record);
     encode(&bench.shared, &mut scratch, &bench.shared.skills[root], false);
-    forward(&bench.nets, &mut scratch, &bench.shared.skills[root], 0);
+    forward(&bench.nets, &mut scratch, &bench.shared.skills[root], &bench.settings[root], 0);
     let sonar = readings(&record).map(|reading| 2.0 * reading / 127.0 - 1.0);
     let bumpers = (0..4).map(|side| f64::from(record[6] >> (24 + side) & 1));
     (scratch, sonar.into_iter().chain(bumpers).collect())
