@@ -43,6 +43,7 @@ fn gradient(lane: u32, skill: u32, number: u32, output: u32, row: u32, errors: E
 
 fn paces(
     lane: u32,
+    units: u32,
     skill: u32,
     s: u32,
     net: u32,
@@ -55,14 +56,15 @@ fn paces(
     let own_activation = hidden[number][lane];
     partials[0][lane] = errors.hidden * errors.hidden;
     partials[1][lane] = own_activation * own_activation;
-    lanes_sums(lane, 2u);
+    lanes_sums(lane, 2u, units);
     let hidden_share = partials[0][0] * settings[s].unit_share;
     let activation = partials[1][0] * settings[s].unit_share;
     let count = skills[skill].inputs;
     let last = count + 1u + skills[skill].outputs;
     let rest2 = 1.0f - settings[s].beta2;
     let squares = net + 2u * skills[skill].rows * LANES;
-    for (var block = 0u; block < MAX_ROWS; block += LANES) {
+    // Blocks of rows, as many as there are.
+    for (var block = 0u; block <= last; block += LANES) {
         let row = block + lane;
         let x = select(1.0f, inputs[min(row, MAX_INPUTS - 1u)], row < count);
         let own = row == count + 1u + output || row == last;
@@ -124,7 +126,7 @@ fn learn(
         }
         let rest1 = 1.0f - beta1;
         if settings[s].optimiser == OPTIMISER_ADAM_ROWS {
-            paces(lane, skill, s, net, number, output, found, rate);
+            paces(lane, units, skill, s, net, number, output, found, rate);
             let count = skills[skill].inputs;
             let chosen = select(0.0f, 1.0f, lane == output);
             for (var row = 0u; row < rows; row++) {

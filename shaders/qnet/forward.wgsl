@@ -23,7 +23,8 @@ fn layer(lane: u32, units: u32, skill: u32, base: u32) {
             var sum = nets[net + count * LANES + lane];
             for (var row = 0u; row < count; row++) {
                 let x = inputs[row];
-                if x != 0.0f {
+                let bits = select(skills[skill].bits_low, skills[skill].bits_high, row >= 32u);
+                if x != 0.0f || ((bits >> (row % 32u)) & 1u) == 0u {
                     sum = sum + nets[net + row * LANES + lane] * x;
                 }
             }
@@ -38,8 +39,9 @@ fn layer(lane: u32, units: u32, skill: u32, base: u32) {
 
 fn forward(lane: u32, skill: u32, s: u32, base: u32) {
     let children = skills[skill].children;
-    layer(lane, lanes_of(settings[s].hidden), skill, base);
-    lanes_sums(lane, children);
+    let lanes = lanes_of(settings[s].hidden);
+    layer(lane, lanes, skill, base);
+    lanes_sums(lane, children, lanes);
     if lane < children {
         let net = select(lane, 0u, skills[skill].nets == 1u);
         let row = skills[skill].inputs + 1u + skills[skill].outputs;

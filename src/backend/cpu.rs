@@ -9,7 +9,7 @@ use crate::evaluate::{STATE_CUT, STATE_FRESH, evaluate};
 use crate::learner::layout::{Cursor, Dispatch, Episode, Robot, Settings};
 use crate::learner::memory::{Learner, Shared};
 use crate::step::step;
-use bytemuck::Zeroable;
+use bytemuck::{Pod, Zeroable};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -126,6 +126,25 @@ dispatched! {
     run_step, step_avx2, step_avx512 = step(robot: &mut Robot, shared: &Shared)
 }
 
+/// A vector of the widest instructions, as it must lie for no access to touch two lines of the cache.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C, align(64))]
+struct Vector([f32; 16]);
+
+/// Where a thread has the nets of the learner that it moves. A cohort's lie as its `Vec` happens to.
+#[derive(Debug, Default)]
+struct Desk(Vec<Vector>);
+
+impl Desk {
+    /// A copy of `nets`.
+    fn take(&mut self, nets: &[f32]) -> &mut [f32] {
+        self.0.resize(nets.len().div_ceil(16), Vector::zeroed());
+        let own = &mut bytemuck::cast_slice_mut(&mut self.0)[..nets.len()];
+        own.copy_from_slice(nets);
+        own
+    }
+}
+
 impl CpuBackend {
     /// A backend on `threads` threads (0: one per core) that leaves each learner after `quanta` quanta, if
     /// given.
@@ -199,9 +218,14 @@ impl Backend for CpuBackend {
                 .zip(cohort.nets.par_chunks_mut(cohort.nets_stride))
                 .zip(cohort.lessons.par_chunks_mut(cohort.lessons_stride))
                 .zip(cohort.rows.par_chunks_mut(cohort.rows_stride))
-                .for_each(|((((cursor, settings), nets), lessons), rows)| {
-                    let mut learner = Learner { shared, settings, cursor, nets, lessons, rows };
+                .for_each_init(Desk::default, |desk, ((((cursor, settings), nets), lessons), rows)| {
+                    if stop.holds(cursor) {
+                        return;
+                    }
+                    let own = desk.take(nets);
+                    let mut learner = Learner { shared, settings, cursor, nets: own, lessons, rows };
                     run_advance(instructions, &mut learner, &dispatch);
+                    nets.copy_from_slice(own);
                 });
         });
         Ok(&cohort.cursors)

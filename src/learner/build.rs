@@ -144,10 +144,13 @@ fn plan_of(skill: &Skill, world: &World, atlas: &mut Atlas) -> Result<SkillPlan,
     plan.groups = skill.inputs.len() as u32;
     plan.starts = skill.starts.len() as u32;
     plan.ends = skill.ends;
-    let mut first = 0;
+    let (mut first, mut bits) = (0, 0_u64);
     for (group, input) in skill.inputs.iter().enumerate() {
         plan.group_first[group] = first;
         plan.group_width[group] = input.width(skill, rooms);
+        if matches!(input, Input::Light | Input::Bumpers) {
+            bits |= ((1 << plan.group_width[group]) - 1) << first;
+        }
         first += plan.group_width[group];
         plan.group_kind[group] = match input {
             Input::Sonar { .. } | Input::SonarFar => GROUP_SONAR,
@@ -169,6 +172,8 @@ fn plan_of(skill: &Skill, world: &World, atlas: &mut Atlas) -> Result<SkillPlan,
             plan.group_table[group] = atlas.add_table(&sonar_table(*input));
         }
     }
+    plan.bits_low = bits as u32;
+    plan.bits_high = (bits >> 32) as u32;
     for (number, (child, threshold)) in skill.children.iter().zip(&skill.applicable).enumerate() {
         plan.child[number] = match child {
             Child::Action(action) => *action as u32,

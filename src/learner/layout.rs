@@ -185,6 +185,10 @@ shared! {
         group_width: [u32; MAX_GROUPS],
         /// Word of the atlas at which a sonar group's table stands.
         group_table: [u32; MAX_GROUPS],
+        /// Which of the first 32 inputs are bits: those of light and bumpers.
+        bits_low: u32,
+        /// Which of the others are.
+        bits_high: u32,
         /// The child that is each child's mirror image.
         mirror_child: [u32; MAX_CHILDREN],
         /// Code of each child: an action, or `SKILL_CODE` and the skill's number.

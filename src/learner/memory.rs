@@ -2,7 +2,7 @@
 //! a workgroup has.
 
 use super::layout::{Cursor, LANES, MAX_CHILDREN, MAX_INPUTS, MAX_ROWS, MAX_SKILLS, RECORD_WORDS, Settings, SkillPlan};
-use crate::math::lanes::Lanes;
+use crate::math::lanes::{Lanes, Partials};
 use crate::robot::floor::Floor;
 
 /// Read-only memory that all learners of a cohort share.
@@ -35,46 +35,20 @@ pub struct Learner<'a> {
     pub rows: &'a mut [u32],
 }
 
-/// Inputs that are not 0, in order. The CPU's alone: a workgroup looks at each.
+/// Twin of the shaders' workgroup memory. Lane arrays come first and lie as the machine's own vectors do.
 #[derive(Debug, Clone)]
-pub struct Seen {
-    rows: [u32; MAX_INPUTS],
-    values: [f32; MAX_INPUTS],
-    count: usize,
-}
-
-impl Seen {
-    /// Lists what is not 0. Without a branch, because which bits of light are set is hard to foretell.
-    #[inline(always)]
-    pub fn list(&mut self, inputs: &[f32]) {
-        self.count = 0;
-        for (row, x) in inputs.iter().enumerate() {
-            // No more are listed than there were.
-            self.rows[self.count % MAX_INPUTS] = row as u32;
-            self.values[self.count % MAX_INPUTS] = *x;
-            self.count += usize::from(*x != 0.0);
-        }
-    }
-
-    /// Number and value of each.
-    #[inline(always)]
-    pub fn iter(&self) -> impl Iterator<Item = (usize, f32)> {
-        let count = self.count.min(MAX_INPUTS);
-        self.rows[..count].iter().zip(&self.values[..count]).map(|(row, x)| (*row as usize, *x))
-    }
-}
-
-/// Twin of the shaders' workgroup memory.
-#[derive(Debug, Clone)]
+#[repr(C, align(64))]
 pub struct Scratch {
+    /// Hidden activations of every child's net.
+    pub hidden: [Lanes; MAX_CHILDREN],
+    /// What sums over lanes are made of.
+    pub partials: Partials,
     /// The step being recorded or replayed.
     pub record: [u32; RECORD_WORDS],
     /// Inputs of the nets.
     pub inputs: [f32; MAX_INPUTS],
-    /// Those that the nets were last asked about, as a list.
-    pub seen: Seen,
-    /// Hidden activations of every child's net.
-    pub hidden: [Lanes; MAX_CHILDREN],
+    /// Which of the inputs are bits that are set. The CPU's alone: a workgroup looks at each.
+    pub set: u64,
     /// Q-value of every child.
     pub q: [f32; MAX_CHILDREN],
     /// What the gradient of each row of weights has in common.
@@ -92,10 +66,11 @@ pub struct Scratch {
 impl Default for Scratch {
     fn default() -> Self {
         Self {
+            hidden: [[0.0; LANES]; MAX_CHILDREN],
+            partials: [[0.0; LANES]; MAX_CHILDREN],
             record: [0; RECORD_WORDS],
             inputs: [0.0; MAX_INPUTS],
-            seen: Seen { rows: [0; MAX_INPUTS], values: [0.0; MAX_INPUTS], count: 0 },
-            hidden: [[0.0; LANES]; MAX_CHILDREN],
+            set: 0,
             q: [0.0; MAX_CHILDREN],
             row_factor: [0.0; MAX_ROWS],
             row_pace: [0.0; MAX_ROWS],

@@ -1,7 +1,7 @@
 //! One step of error back-propagation through one child's net (paper, section I, step 2).
 
 use super::forward::{FEW, lanes_of, net_of};
-use crate::learner::layout::{LANES, MAX_CHILDREN, MAX_INPUTS, MAX_ROWS, Settings, SkillPlan};
+use crate::learner::layout::{LANES, MAX_INPUTS, MAX_ROWS, Settings, SkillPlan};
 use crate::learner::memory::Scratch;
 use crate::math::functions::{flush, reciprocal, reciprocal_sqrt, square_root};
 use crate::math::lanes::{Lanes, lanes_sums};
@@ -12,6 +12,9 @@ pub const OPTIMISER_SGD: u32 = 0;
 pub const OPTIMISER_ADAM: u32 = 1;
 /// Adam with one second moment for each row of weights.
 pub const OPTIMISER_ADAM_ROWS: u32 = 2;
+
+/// Rows whose paces are found together: a divisor of `MAX_ROWS`.
+const BLOCK: usize = 16;
 
 /// Lane of the clock row at which the second moments' decay stands; the first moments' stand from lane 0.
 pub const CLOCK_SECOND: u32 = 16;
@@ -81,7 +84,7 @@ pub fn gradient(scratch: &Scratch, plan: &SkillPlan, number: u32, output: u32, r
 /// square needs no pass over the weights.
 #[inline(always)]
 #[expect(clippy::too_many_arguments, reason = "the twin of a shader function, which has no methods")]
-pub fn paces(
+pub fn paces<const UNITS: usize>(
     nets: &mut [f32],
     scratch: &mut Scratch,
     plan: &SkillPlan,
@@ -91,33 +94,42 @@ pub fn paces(
     errors: &Errors,
     rate: f32,
 ) {
-    let mut partials = [[0.0; LANES]; MAX_CHILDREN];
-    for lane in 0..LANES {
+    for lane in 0..UNITS {
         let activation = scratch.hidden[number as usize][lane];
-        partials[0][lane] = errors.hidden[lane] * errors.hidden[lane];
-        partials[1][lane] = activation * activation;
+        scratch.partials[0][lane] = errors.hidden[lane] * errors.hidden[lane];
+        scratch.partials[1][lane] = activation * activation;
     }
     // A number that the compiler does not know keeps the sums in their lanes.
-    lanes_sums(&mut partials, std::hint::black_box(2));
-    let hidden = partials[0][0] * settings.unit_share;
-    let activation = partials[1][0] * settings.unit_share;
+    lanes_sums(&mut scratch.partials, std::hint::black_box(2), UNITS);
+    let hidden = scratch.partials[0][0] * settings.unit_share;
+    let activation = scratch.partials[1][0] * settings.unit_share;
     let count = plan.inputs as usize;
     let last = count + 1 + plan.outputs as usize;
     let rest2 = 1.0 - settings.beta2;
     let mut inputs = [0.0; MAX_ROWS];
     inputs[..MAX_INPUTS].copy_from_slice(&scratch.inputs);
     let squares = &mut nets[(net + 2 * plan.rows * LANES as u32) as usize..][..MAX_ROWS];
-    for row in 0..MAX_ROWS {
-        let x = if row < count { inputs[row] } else { 1.0 };
-        let own = row == count + 1 + output as usize || row == last;
-        let out = if own { errors.output } else { 0.0 };
-        let factor = if row <= count { x } else { out };
-        let above = if row < last { activation } else { 1.0 };
-        let alike = if row <= count { hidden } else { above };
-        let square = flush(settings.beta2 * squares[row] + rest2 * (factor * factor * alike));
-        squares[row] = square;
-        scratch.row_factor[row] = factor;
-        scratch.row_pace[row] = rate * reciprocal_sqrt(square + settings.epsilon2);
+    // Blocks of rows, as many as there are.
+    for block in (0..=last).step_by(BLOCK) {
+        let mut factors = [0.0; BLOCK];
+        let mut moved = units::<BLOCK>(&squares[block..]);
+        let mut paces = [0.0; BLOCK];
+        let x = units::<BLOCK>(&inputs[block..]);
+        for lane in 0..BLOCK {
+            let row = block + lane;
+            let x = if row < count { x[lane] } else { 1.0 };
+            let own = row == count + 1 + output as usize || row == last;
+            let out = if own { errors.output } else { 0.0 };
+            let factor = if row <= count { x } else { out };
+            let above = if row < last { activation } else { 1.0 };
+            let alike = if row <= count { hidden } else { above };
+            moved[lane] = flush(settings.beta2 * moved[lane] + rest2 * (factor * factor * alike));
+            factors[lane] = factor;
+            paces[lane] = rate * reciprocal_sqrt(moved[lane] + settings.epsilon2);
+        }
+        squares[block..block + BLOCK].copy_from_slice(&moved);
+        scratch.row_factor[block..block + BLOCK].copy_from_slice(&factors);
+        scratch.row_pace[block..block + BLOCK].copy_from_slice(&paces);
     }
 }
 
@@ -128,9 +140,9 @@ pub fn learning_rate(settings: &Settings, trial: u32) -> f32 {
     settings.rate * (1.0 - settings.rate_fall * risen as f32)
 }
 
-/// The lanes of a row that are in use, as a value: they are loaded, computed and stored together.
+/// The first numbers of a row, as a value: they are loaded, computed and stored together.
 #[inline(always)]
-fn units<const UNITS: usize>(row: &Lanes) -> [f32; UNITS] {
+fn units<const UNITS: usize>(row: &[f32]) -> [f32; UNITS] {
     let mut own = [0.0; UNITS];
     own.copy_from_slice(&row[..UNITS]);
     own
@@ -181,16 +193,14 @@ fn learn<const UNITS: usize>(
         nets[clock + CLOCK_SECOND as usize] = second;
         let rest1 = 1.0 - beta1;
         if settings.optimiser == OPTIMISER_ADAM_ROWS {
-            paces(nets, scratch, skill, settings, net, (number, output), found, rate);
+            paces::<UNITS>(nets, scratch, skill, settings, net, (number, output), found, rate);
             let count = skill.inputs as usize;
             let (weights, means) = nets[net as usize..(net + 2 * slab) as usize].split_at_mut(slab as usize);
             let weights = weights.as_chunks_mut::<LANES>().0;
             let means = means.as_chunks_mut::<LANES>().0;
             let mut chosen = [0.0; LANES];
             chosen[output as usize] = 1.0;
-            for row in 0..rows as usize {
-                let above = if row + 1 < rows as usize { &scratch.hidden[number as usize] } else { &chosen };
-                let alike = if row <= count { &found.hidden } else { above };
+            let mut turn = |row: usize, alike: &[f32; UNITS]| {
                 let factor = rest1 * scratch.row_factor[row];
                 let step = scratch.row_pace[row];
                 let (mut mean, mut weight) = (units::<UNITS>(&means[row]), units::<UNITS>(&weights[row]));
@@ -200,7 +210,16 @@ fn learn<const UNITS: usize>(
                 }
                 means[row][..UNITS].copy_from_slice(&mean);
                 weights[row][..UNITS].copy_from_slice(&weight);
+            };
+            let below = units::<UNITS>(&found.hidden);
+            for row in 0..=count {
+                turn(row, &below);
             }
+            let above = units::<UNITS>(&scratch.hidden[number as usize]);
+            for row in count + 1..rows as usize - 1 {
+                turn(row, &above);
+            }
+            turn(rows as usize - 1, &units::<UNITS>(&chosen));
         } else {
             let rest2 = 1.0 - beta2;
             let (weights, moments) = nets[net as usize..(net + 3 * slab) as usize].split_at_mut(slab as usize);

@@ -1,9 +1,9 @@
 //! Q-values of every child.
 
-use crate::learner::layout::{LANES, MAX_CHILDREN, Settings, SkillPlan};
+use crate::learner::layout::{LANES, MAX_CHILDREN, MAX_INPUTS, Settings, SkillPlan};
 use crate::learner::memory::Scratch;
 use crate::math::functions::squash;
-use crate::math::lanes::{Lanes, Partials, lanes_sums};
+use crate::math::lanes::{Lanes, lanes_sums};
 
 /// Lanes that do for a net of few hidden units: half of them.
 pub const FEW: usize = 16;
@@ -32,19 +32,14 @@ fn added<const UNITS: usize>(sums: [f32; UNITS], weights: &Lanes, x: f32) -> [f3
 
 /// Computes `hidden` of every net, of which `UNITS` lanes are in use, and what its outputs are summed from.
 ///
-/// `ABREAST` nets are summed side by side, so that one need not wait for the other's sum. What is 0 is passed over: of
-/// the bits of light few are set.
+/// `ABREAST` nets are summed side by side, so that one need not wait for the other's sum. Bits that are not set are
+/// passed over: of those of light few are.
 #[inline(always)]
-fn layer<const UNITS: usize, const ABREAST: usize>(
-    nets: &[f32],
-    scratch: &mut Scratch,
-    partials: &mut Partials,
-    skill: &SkillPlan,
-    base: u32,
-) {
+fn layer<const UNITS: usize, const ABREAST: usize>(nets: &[f32], scratch: &mut Scratch, skill: &SkillPlan, base: u32) {
     let inputs = skill.inputs as usize;
     let outputs = skill.outputs as usize;
-    scratch.seen.list(&scratch.inputs[..inputs]);
+    let bits = (u64::from(skill.bits_high) << 32) | u64::from(skill.bits_low);
+    let used = ((u64::MAX >> (MAX_INPUTS - inputs)) & !bits) | scratch.set;
     for first in (0..skill.nets).step_by(ABREAST) {
         // The last one stands in for who is missing beside it.
         let numbers: [u32; ABREAST] = std::array::from_fn(|beside| (first + beside as u32).min(skill.nets - 1));
@@ -56,7 +51,11 @@ fn layer<const UNITS: usize, const ABREAST: usize>(
         for beside in 0..ABREAST {
             sums[beside].copy_from_slice(&weights[beside][inputs][..UNITS]);
         }
-        for (row, x) in scratch.seen.iter() {
+        let mut left = used;
+        while left != 0 {
+            let row = left.trailing_zeros() as usize;
+            left &= left - 1;
+            let x = scratch.inputs[row];
             for beside in 0..ABREAST {
                 sums[beside] = added(sums[beside], &weights[beside][row], x);
             }
@@ -68,9 +67,11 @@ fn layer<const UNITS: usize, const ABREAST: usize>(
                 activations[lane] = squash(sums[beside][lane]);
             }
             for output in 0..outputs {
+                let mut parts = [0.0; UNITS];
                 for lane in 0..UNITS {
-                    partials[number + output][lane] = activations[lane] * weights[beside][inputs + 1 + output][lane];
+                    parts[lane] = activations[lane] * weights[beside][inputs + 1 + output][lane];
                 }
+                scratch.partials[number + output][..UNITS].copy_from_slice(&parts);
             }
             scratch.hidden[number] = activations;
         }
@@ -80,19 +81,21 @@ fn layer<const UNITS: usize, const ABREAST: usize>(
 /// Computes `hidden` and `q` of every child from `inputs`.
 #[inline(always)]
 pub fn forward(nets: &[f32], scratch: &mut Scratch, skill: &SkillPlan, settings: &Settings, base: u32) {
-    let mut partials = [[0.0; LANES]; MAX_CHILDREN];
-    if lanes_of(settings.hidden) == FEW {
-        layer::<FEW, 2>(nets, scratch, &mut partials, skill, base);
+    let lanes = lanes_of(settings.hidden);
+    if lanes == FEW && skill.nets > 4 {
+        layer::<FEW, 3>(nets, scratch, skill, base);
+    } else if lanes == FEW {
+        layer::<FEW, 2>(nets, scratch, skill, base);
     } else {
-        layer::<LANES, 1>(nets, scratch, &mut partials, skill, base);
+        layer::<LANES, 1>(nets, scratch, skill, base);
     }
-    lanes_sums(&mut partials, skill.children);
+    lanes_sums(&mut scratch.partials, skill.children, lanes);
     let mut sums = [0.0; MAX_CHILDREN];
     for child in 0..skill.children as usize {
         let net = if skill.nets == 1 { 0 } else { child };
         let row = skill.inputs as usize + 1 + skill.outputs as usize;
         let bias = nets[net_of(skill, base, net as u32) as usize + row * LANES + (child - net)];
-        sums[child] = partials[child][0] + bias;
+        sums[child] = scratch.partials[child][0] + bias;
     }
     for child in 0..MAX_CHILDREN {
         scratch.q[child] = squash(sums[child]);

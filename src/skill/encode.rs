@@ -79,9 +79,17 @@ pub fn marked(scratch: &Scratch, skill: &SkillPlan, kind: u32, lane: u32) -> f32
     value
 }
 
+/// A ring of `count` bits, or what a mirror would show of it: the first stays, the others change sides.
+#[inline(always)]
+fn shown(ring: u32, count: usize, mirrored: bool) -> u32 {
+    let others = (ring.reverse_bits() >> (31 - count)) & !(1 << count);
+    if mirrored { (ring & 1) | others } else { ring }
+}
+
 /// Turns the record, or what a mirror would show of it, into the inputs of a skill's nets.
 #[inline(always)]
 pub fn encode(shared: &Shared, scratch: &mut Scratch, skill: &SkillPlan, mirrored: bool) {
+    scratch.set = 0;
     for group in 0..skill.groups as usize {
         let kind = skill.group_kind[group];
         let first = skill.group_first[group] as usize;
@@ -104,15 +112,17 @@ pub fn encode(shared: &Shared, scratch: &mut Scratch, skill: &SkillPlan, mirrore
                 scratch.inputs[first + lane] = near + part * (coded(shared, scratch, table, before) - near);
             }
         } else if kind == GROUP_LIGHT {
+            let lit = shown(scratch.record[6] & 0x00ff_ffff, RAYS, mirrored);
             for lane in 0..RAYS {
-                let ray = if mirrored { (RAYS - lane) % RAYS } else { lane };
-                scratch.inputs[first + lane] = ((scratch.record[6] >> ray) & 1) as f32;
+                scratch.inputs[first + lane] = ((lit >> lane) & 1) as f32;
             }
+            scratch.set |= u64::from(lit) << first;
         } else if kind == GROUP_BUMPERS {
+            let touched = shown((scratch.record[6] >> 24) & 0xf, 4, mirrored);
             for lane in 0..4 {
-                let side = if mirrored { (4 - lane) % 4 } else { lane };
-                scratch.inputs[first + lane] = ((scratch.record[6] >> (24 + side)) & 1) as f32;
+                scratch.inputs[first + lane] = ((touched >> lane) & 1) as f32;
             }
+            scratch.set |= u64::from(touched) << first;
         } else if kind == GROUP_COMPASS || kind == GROUP_COMPASS2 {
             let compass = f32::from_bits(scratch.record[7]);
             let (sine, cosine) = sin_cos(if kind == GROUP_COMPASS { compass } else { wrap_degrees(compass * 2.0) });

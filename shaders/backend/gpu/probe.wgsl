@@ -86,7 +86,7 @@ fn lanes(lane: u32, x: f32, word: u32) {
     answers[answer_base + 44u] = lanes_or(lane, word & (1u << lane));
     partials[0][lane] = x;
     partials[1][lane] = x * x;
-    lanes_sums(lane, 2u);
+    lanes_sums(lane, 2u, LANES);
     put(45u, partials[0][0]);
     put(46u, partials[1][0]);
 }

@@ -150,7 +150,7 @@ fn lanes(answers: &mut [Answer; LANES], x: &[f32; LANES], words: &[u32; LANES]) 
     let mut partials: Partials = [[0.0; LANES]; MAX_CHILDREN];
     partials[0] = *x;
     partials[1] = x.map(|x| x * x);
-    lanes_sums(&mut partials, 2);
+    lanes_sums(&mut partials, 2, LANES);
     for answer in answers {
         put(answer, 43, least);
         answer[44] = bits;
