@@ -1,11 +1,12 @@
 //! From a plan to the memory of a cohort: every derived size is computed here, once.
 
 use super::layout::{
-    BASE_WORDS, Cursor, EVENTS, LANES, LESSON_HEADER, MAX_CHILDREN, MAX_GROUPS, MAX_INPUTS, MAX_SKILLS, MAX_STARTS,
-    RECORD_WORDS, ROW_WORDS, SKILL_CODE, SONAR_CODES, Settings, SkillPlan,
+    BASE_WORDS, Cursor, EVENTS, LANES, LESSON_HEADER, MAX_CHILDREN, MAX_GROUPS, MAX_INPUTS, MAX_ROWS, MAX_SKILLS,
+    MAX_STARTS, RECORD_WORDS, ROW_WORDS, SKILL_CODE, SONAR_CODES, Settings, SkillPlan,
 };
 use crate::config::plan::{Arm, Child, Input, NoiseKind, Optimiser, Skill, Threshold};
 use crate::qnet::backward::{OPTIMISER_ADAM, OPTIMISER_ADAM_ROWS, OPTIMISER_SGD};
+use crate::qnet::forward::net_of;
 use crate::qnet::init::init;
 use crate::skill::encode::{
     GROUP_APPLICABLE, GROUP_BUMPERS, GROUP_COMPASS, GROUP_COMPASS2, GROUP_DOOR_TRACE, GROUP_LIGHT, GROUP_LIGHT_TRACE,
@@ -76,6 +77,9 @@ impl Shape {
             shape.rows_stride += most(|skill| skill.trials + skill.lessons) as usize * ROW_WORDS;
             shape.skills.push(plan);
         }
+        // Every net can be read as one of `MAX_ROWS` rows: the last one too.
+        let ends = shape.skills.iter().map(|plan| net_of(plan, 0, plan.nets.max(1) - 1) as usize + MAX_ROWS * LANES);
+        shape.nets_stride = ends.fold(shape.nets_stride, usize::max);
         // No buffer may be empty, even where nothing is trained.
         shape.lessons_stride = shape.lessons_stride.max(1);
         shape.rows_stride = shape.rows_stride.max(ROW_WORDS);

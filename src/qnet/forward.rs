@@ -1,6 +1,6 @@
 //! Q-values of every child.
 
-use crate::learner::layout::{LANES, MAX_CHILDREN, MAX_INPUTS, Settings, SkillPlan};
+use crate::learner::layout::{LANES, MAX_CHILDREN, MAX_INPUTS, MAX_ROWS, Settings, SkillPlan};
 use crate::learner::memory::Scratch;
 use crate::math::functions::squash;
 use crate::math::lanes::{Lanes, lanes_sums};
@@ -44,8 +44,8 @@ fn layer<const UNITS: usize, const ABREAST: usize>(nets: &[f32], scratch: &mut S
         // The last one stands in for who is missing beside it.
         let numbers: [u32; ABREAST] = std::array::from_fn(|beside| (first + beside as u32).min(skill.nets - 1));
         let weights = numbers.map(|number| {
-            let net = net_of(skill, base, number) as usize;
-            &nets[net..net + skill.rows as usize * LANES].as_chunks::<LANES>().0[..inputs + 2 + outputs]
+            let rows = nets[net_of(skill, base, number) as usize..].as_chunks::<LANES>().0;
+            rows.first_chunk::<MAX_ROWS>().expect("room for the most rows")
         });
         let mut sums = [[0.0; UNITS]; ABREAST];
         for beside in 0..ABREAST {
@@ -82,10 +82,8 @@ fn layer<const UNITS: usize, const ABREAST: usize>(nets: &[f32], scratch: &mut S
 #[inline(always)]
 pub fn forward(nets: &[f32], scratch: &mut Scratch, skill: &SkillPlan, settings: &Settings, base: u32) {
     let lanes = lanes_of(settings.hidden);
-    if lanes == FEW && skill.nets > 4 {
-        layer::<FEW, 3>(nets, scratch, skill, base);
-    } else if lanes == FEW {
-        layer::<FEW, 2>(nets, scratch, skill, base);
+    if lanes == FEW {
+        layer::<FEW, 6>(nets, scratch, skill, base);
     } else {
         layer::<LANES, 1>(nets, scratch, skill, base);
     }
