@@ -10,6 +10,7 @@ use skilltree::bench::limits::Meter;
 use skilltree::bench::measure::Measured;
 use skilltree::bench::result::Report;
 use skilltree::bench::tasks::{Decisions, Hierarchy, Replay, RobotSteps, Rule, Size, Task};
+use skilltree::bench::workload::HIERARCHY;
 use skilltree::learner::layout::{Cursor, Episode, Robot};
 use skilltree::learner::memory::Shared;
 use std::ops::Range;
@@ -98,7 +99,7 @@ type Case<'a> = (&'a dyn Task, Fault, fn() -> Executor);
 
 #[test]
 fn one_wrong_bit_leaves_no_figure() {
-    let hierarchy = Hierarchy::new(2).expect("the built-in experiment");
+    let hierarchy = Hierarchy::new(HIERARCHY, 2).expect("the built-in experiment");
     let cpu = || Executor::of("cpu", Kind::Cpu, 1, Box::new(CpuBackend::new(1, None).expect("a thread")));
     let (steps, replay) = (RobotSteps::new(Size::TINY, 1), Replay::new(Size::TINY, Rule::Adam));
     let (steps, replay) = (steps.expect("robots"), replay.expect("learners"));
@@ -128,7 +129,7 @@ fn json_has_shares_of_limits_and_the_same_rate_twice() {
     assert_eq!(serde_json::to_value(&report).expect("JSON"), value);
     assert_eq!((report.format, report.limits.len()), (1, 8));
     let names: Vec<&str> = report.tasks.iter().map(|task| task.name.as_str()).collect();
-    let replays = ["transitions-adam", "transitions-adam-rows", "transitions-sgd"];
+    let replays = ["transitions-adam", "transitions-adam-rows", "transitions-few", "transitions-sgd"];
     assert_eq!(names, [&["robot-steps", "robot-steps-held"][..], &replays, &["decisions"]].concat());
     for limit in &report.limits {
         assert!(limit.rate.median > 1.0e8, "{limit:?}");

@@ -92,6 +92,8 @@ const OWN_FUNCTIONS: &[(&str, &str)] = &[
     ("qnet/backward.wgsl", "units"),
     // A workgroup draws a lane's words in that lane.
     ("math/rng.wgsl", "draws"),
+    // A lane looks at its own bit.
+    ("skill/encode.wgsl", "shown"),
     // It is made when the program is compiled; a lane turns its own ray.
     ("robot/sonar.wgsl", "ray_table"),
 ];

@@ -8,9 +8,10 @@
 //! Bytes are those of nets: what is read, and what is written, of the lanes' rows. Everything else fits registers or
 //! the nearest cache.
 
-use crate::learner::layout::{LANES, MAX_ROWS, MAX_SKILLS, SkillPlan};
+use crate::learner::layout::{LANES, MAX_SKILLS, SkillPlan};
 use crate::math::rng::DICE;
 use crate::qnet::backward::{OPTIMISER_ADAM_ROWS, OPTIMISER_SGD};
+use crate::qnet::forward::FEW;
 use crate::robot::floor::{BLOCK, Floor};
 use crate::robot::light::{falloff, in_sight};
 use crate::robot::sonar::LINE_LANES;
@@ -92,32 +93,34 @@ fn step_at(floor: &Floor, light: f32, x: f32, y: f32, moves: f64) -> f64 {
     (DICE * DRAW + bumpers + rays + ranges + readings + lit) as f64 + moves * sweep as f64
 }
 
-/// All nets of a skill forwards: weights read once.
-pub fn forward(skill: &SkillPlan) -> Cost {
-    let (nets, inputs, outputs) = (skill.nets as usize, skill.inputs as usize, skill.outputs as usize);
-    let hidden = nets * LANES * (2 * inputs + SQUASH + outputs);
-    let values = skill.children as usize * (REDUCE + 1 + SQUASH);
-    Cost { lane_operations: (hidden + values) as f64, bytes: (nets * row_bytes(inputs + 1 + outputs)) as f64 }
+/// All nets of a skill forwards: weights read once. `lanes` of each row are in use, and on average `seen` of the inputs:
+/// bits that are not set are passed over.
+pub fn forward(skill: &SkillPlan, lanes: usize, seen: f64) -> Cost {
+    let (nets, outputs) = (f64::from(skill.nets), f64::from(skill.outputs));
+    let hidden = nets * lanes as f64 * (2.0 * seen + SQUASH as f64 + outputs);
+    let values = skill.children as usize * (lanes + SQUASH);
+    Cost { lane_operations: hidden + values as f64, bytes: nets * (seen + 1.0 + outputs) * row_bytes(lanes) }
 }
 
-/// One transition replayed: nets forwards, odds, and one net backwards by one of the optimisers of `qnet/backward`.
-pub fn transition(skill: &SkillPlan, optimiser: u32) -> Cost {
+/// One transition replayed: nets forwards, as in [`forward`], odds, and one net backwards by one of the optimisers of
+/// `qnet/backward`.
+pub fn transition(skill: &SkillPlan, lanes: usize, seen: f64, optimiser: u32) -> Cost {
     let rows = skill.rows as usize;
     let odds = skill.children as usize * (EXPONENTIAL + 4);
-    let errors = LANES * 4;
+    let errors = lanes * 4;
     // A velocity, or a mean, with its decay; Adam's square and root.
     let (mean, square, root) = (3 + FLUSH, 4 + FLUSH, 1 + RECIPROCAL_SQRT + 1);
     let (weight, apart, slabs) = match optimiser {
         OPTIMISER_SGD => (1 + mean + 1, 0, 2),
         // Two means of squares, then square and root once for each row.
-        OPTIMISER_ADAM_ROWS => (mean + 2, 2 * (LANES + REDUCE) + MAX_ROWS * (1 + square + root), 2),
+        OPTIMISER_ADAM_ROWS => (mean + 2, 2 * (2 * lanes - 1) + rows.next_multiple_of(FEW) * (1 + square + root), 2),
         _ => (1 + mean + square + root + 2, 0, 3),
     };
-    let forward = forward(skill);
-    let squares = if optimiser == OPTIMISER_ADAM_ROWS { 2 * MAX_ROWS * size_of::<f32>() } else { 0 };
+    let forward = forward(skill, lanes, seen);
+    let squares = if optimiser == OPTIMISER_ADAM_ROWS { 2.0 * row_bytes(rows.next_multiple_of(FEW)) } else { 0.0 };
     Cost {
-        lane_operations: forward.lane_operations + (odds + errors + LANES * rows * weight + apart) as f64,
-        bytes: forward.bytes + (2 * slabs * row_bytes(rows) + squares) as f64,
+        lane_operations: forward.lane_operations + (odds + errors + lanes * rows * weight + apart) as f64,
+        bytes: forward.bytes + (2 * slabs * rows) as f64 * row_bytes(lanes) + squares,
     }
 }
 
@@ -132,12 +135,15 @@ pub fn decision(
     root: usize,
 ) -> Cost {
     let watched = (0..root.min(MAX_SKILLS)).filter(|n| (skills[root].watched >> n) & 1 == 1);
-    watched.chain([root]).map(|n| forward(&skills[n])).fold(step(floor, light, places, 0.0), |sum, own| Cost {
+    // Bits are left out.
+    let seen = |skill: &SkillPlan| skill.inputs - skill.bits_low.count_ones() - skill.bits_high.count_ones();
+    let of = |n: usize| forward(&skills[n], LANES, f64::from(seen(&skills[n])));
+    watched.chain([root]).map(of).fold(step(floor, light, places, 0.0), |sum, own| Cost {
         lane_operations: sum.lane_operations + own.lane_operations,
         bytes: sum.bytes + own.bytes,
     })
 }
 
-fn row_bytes(rows: usize) -> usize {
-    rows * LANES * size_of::<f32>()
+fn row_bytes(lanes: usize) -> f64 {
+    (lanes * size_of::<f32>()) as f64
 }

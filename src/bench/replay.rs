@@ -14,7 +14,7 @@ use crate::lesson::record::CUT;
 use crate::lesson::replay::taught_lesson;
 use crate::math::functions::{exponential, flush, reciprocal, reciprocal_sqrt, square_root, squash};
 use crate::qnet::backward::{CLOCK_SECOND, OPTIMISER_ADAM_ROWS, OPTIMISER_SGD};
-use crate::qnet::forward::net_of;
+use crate::qnet::forward::{lanes_of, net_of};
 use crate::skill::encode::{GROUP_BUMPERS, GROUP_LIGHT, GROUP_SONAR};
 use bytemuck::Zeroable;
 
@@ -95,7 +95,26 @@ impl Drill {
 
     /// The nets of a cohort of this shape, for the scalar reference.
     pub fn nets(&self, cohort: &Cohort) -> Vec<Nets> {
-        cohort.nets.chunks(cohort.nets_stride).map(|words| Nets::from_lanes(words, self.skill())).collect()
+        let units = lanes_of(self.settings(0).hidden);
+        cohort.nets.chunks(cohort.nets_stride).map(|words| Nets::from_lanes(words, self.skill(), units)).collect()
+    }
+
+    /// Inputs of a step that are not bits, or are set: the mean over the taught lessons.
+    pub fn inputs_seen(&self) -> f64 {
+        let (shared, skill) = (&self.group.shared, self.skill());
+        let lessons = (0..self.cohort.cursors.len())
+            .flat_map(|learner| (0..self.settings(learner).lessons).map(move |lesson| self.lesson_of(learner, lesson)));
+        let records = lessons.flat_map(|at| {
+            let steps = shared.bank[at] as usize;
+            shared.bank[at + LESSON_HEADER..].chunks(skill.record_words as usize).take(steps)
+        });
+        let bits = (u64::from(skill.bits_high) << 32) | u64::from(skill.bits_low);
+        let seen = |record: &[u32]| {
+            let x = encode(record, skill, &shared.atlas);
+            x.iter().enumerate().filter(|(input, x)| (bits >> input) & 1 == 0 || **x != 0.0).count()
+        };
+        let (sum, count) = records.fold((0, 0_usize), |(sum, count), record| (sum + seen(record), count + 1));
+        sum as f64 / count.max(1) as f64
     }
 }
 
@@ -130,15 +149,15 @@ pub struct Nets {
 }
 
 impl Nets {
-    /// Copies a learner's nets out of the lanes' layout.
-    pub fn from_lanes(words: &[f32], skill: &SkillPlan) -> Self {
+    /// Copies a learner's nets, of so many units, out of the lanes' layout.
+    pub fn from_lanes(words: &[f32], skill: &SkillPlan, units: usize) -> Self {
         let inputs = skill.inputs as usize;
         let slab_words = skill.rows as usize * LANES;
         let slab = |at: usize| {
             let rows = words[at..at + slab_words].as_chunks::<LANES>().0;
             Slab {
-                units: (0..LANES).map(|unit| (0..=inputs).map(|row| rows[row][unit]).collect()).collect(),
-                output: rows[inputs + 1].to_vec(),
+                units: (0..units).map(|unit| (0..=inputs).map(|row| rows[row][unit]).collect()).collect(),
+                output: rows[inputs + 1][..units].to_vec(),
                 bias: rows[inputs + 2][0],
             }
         };
@@ -255,7 +274,7 @@ impl Net {
     fn update_rows(&mut self, x: &[f32], hidden: &[f32], error: f32, rate: f32, settings: &Settings) {
         let Self { weights, means, rows, .. } = self;
         let slope = |unit: usize| error * weights.output[unit] * (1.0 - hidden[unit] * hidden[unit]);
-        let slopes: Vec<f32> = (0..LANES).map(slope).collect();
+        let slopes: Vec<f32> = (0..hidden.len()).map(slope).collect();
         let below = mean_square(&slopes, settings);
         let above = mean_square(hidden, settings);
         // The factor that a row's gradient has in common, and the pace at which the row moves.
@@ -271,12 +290,12 @@ impl Net {
         let bias = x.len();
         for (input, factor) in x.iter().copied().chain([1.0]).enumerate() {
             let moves = pace(input, factor, below);
-            for unit in 0..LANES {
+            for unit in 0..hidden.len() {
                 step(&mut weights.units[unit][input], &mut means.units[unit][input], moves, slopes[unit]);
             }
         }
         let moves = pace(bias + 1, error, above);
-        for unit in 0..LANES {
+        for unit in 0..hidden.len() {
             step(&mut weights.output[unit], &mut means.output[unit], moves, hidden[unit]);
         }
         step(&mut weights.bias, &mut means.bias, pace(bias + 2, error, 1.0), 1.0);

@@ -7,6 +7,7 @@ use super::limits::Meter;
 use super::measure::Measured;
 use super::result::{FORMAT, Origin, Report};
 use super::tasks::{Decisions, Hierarchy, Learners, Replay, RobotSteps, Rule, Size, Task};
+use super::workload::{HIERARCHY, THRESHOLDS};
 use std::time::SystemTime;
 
 /// Whole learners that a graphics card trains at a time, unless told otherwise.
@@ -37,17 +38,20 @@ pub fn run(options: Options, command: &str, note: &mut dyn FnMut(&str)) -> Resul
     let size = options.size.unwrap_or(if card { Size::DEVICE } else { Size::HOST });
     let host = options.learners.unwrap_or(std::thread::available_parallelism().map_or(1, |cores| cores.get() as u32));
     let device = options.learners.unwrap_or(if card { DEVICE_LEARNERS } else { 0 });
-    let hierarchy = Hierarchy::new(size.learners.max(host).max(device))?;
+    let hierarchy = Hierarchy::new(HIERARCHY, size.learners.max(host).max(device))?;
+    let lean = if host > 0 { Some(Hierarchy::new(THRESHOLDS, host.max(device))?) } else { None };
     let mut tasks: Vec<Box<dyn Task + '_>> = vec![
         Box::new(RobotSteps::new(size, 1)?),
         Box::new(RobotSteps::new(size, HELD)?),
         Box::new(Replay::new(size, Rule::Adam)?),
         Box::new(Replay::new(size, Rule::AdamRows)?),
+        Box::new(Replay::new(size, Rule::Few)?),
         Box::new(Replay::new(size, Rule::Sgd)?),
         Box::new(Decisions::new(&hierarchy, size)),
     ];
-    if host > 0 {
-        tasks.push(Box::new(Learners::new(&hierarchy, host, device)));
+    if let Some(lean) = &lean {
+        tasks.push(Box::new(Learners::new("learners", &hierarchy, host, device)));
+        tasks.push(Box::new(Learners::new("learners-lean", lean, host, device)));
         if executors.iter().any(|executor| executor.about.kind == Kind::SoftwareGpu) {
             left_out.push("learners on software adapters: they would take too long".to_owned());
         }

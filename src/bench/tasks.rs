@@ -7,12 +7,14 @@ use super::executor::{Executor, Kind};
 use super::limits::Limit;
 use super::replay::{Drill, Nets};
 use super::simulate::Walk;
-use super::workload::{self, DOCKING, HIERARCHY};
+use super::workload::{self, DOCKING, THRESHOLDS};
 use crate::backend::{Cohort, Test};
-use crate::config::plan::Plan;
+use crate::config::plan::{Optimiser, Plan};
 use crate::experiment::group::{Group, LearnerId, groups};
 use crate::experiment::train::train;
+use crate::learner::layout::Settings;
 use crate::qnet::backward::{OPTIMISER_ADAM_ROWS, OPTIMISER_SGD};
+use crate::qnet::forward::lanes_of;
 use glam::Vec2;
 
 /// A piece of work done once.
@@ -129,6 +131,8 @@ pub enum Rule {
     Adam,
     /// Adam with one second moment for each row of weights.
     AdamRows,
+    /// The same for nets of 16 hidden units, which take half of the lanes.
+    Few,
     /// Plain gradient descent.
     Sgd,
 }
@@ -147,17 +151,19 @@ impl Replay {
     /// # Errors
     /// Where the built-in config cannot be read or its teacher fails.
     pub fn new(size: Size, rule: Rule) -> Result<Self, BenchError> {
-        let (name, arm, optimiser) = match rule {
-            Rule::Adam => ("transitions-adam", "taught-adam", "adam"),
-            Rule::AdamRows => ("transitions-adam-rows", "taught-adam", "adam-rows"),
-            Rule::Sgd => ("transitions-sgd", "taught-sgd", "sgd"),
+        let (name, arm, optimiser, hidden) = match rule {
+            Rule::Adam => ("transitions-adam", "taught-adam", "adam", 32),
+            Rule::AdamRows => ("transitions-adam-rows", "taught-adam", "adam-rows", 32),
+            Rule::Few => ("transitions-few", "taught-adam", "adam-rows", 16),
+            Rule::Sgd => ("transitions-sgd", "taught-sgd", "sgd", 32),
         };
+        let hidden = format!("learning.hidden={hidden}");
         let optimiser = format!("arm.{arm}.learning.optimiser=\"{optimiser}\"");
         let arms = format!("arms=[\"{arm}\"]");
         let passes = format!("arm.{arm}.learning.taught_passes={}", size.passes);
         let plan = workload::plan(
             DOCKING,
-            &[&arms, &passes, &optimiser, "teacher.episodes=1", "skill.dock.trials=0"],
+            &[&arms, &passes, &optimiser, &hidden, "teacher.episodes=1", "skill.dock.trials=0"],
             size.learners,
         )?;
         Ok(Self { name, drill: Drill::new(&plan)?, passes: size.passes })
@@ -177,16 +183,18 @@ impl Task for Replay {
         };
         let skill = self.drill.skill();
         format!(
-            "one replayed transition: {} nets of {}-32-1 forwards, one backwards, {rule}; {} learners",
+            "one replayed transition: {} nets of {}-{}-1 forwards, one backwards, {rule}; {} learners",
             skill.nets,
             skill.inputs,
+            self.drill.settings(0).hidden,
             self.drill.cohort().cursors.len()
         )
     }
 
     fn cost(&self) -> Option<(Cost, Limit, Option<Limit>)> {
-        let optimiser = self.drill.settings(0).optimiser;
-        Some((cost::transition(self.drill.skill(), optimiser), Limit::MultiplyAdd, Some(Limit::FarUpdate)))
+        let Settings { hidden, optimiser, .. } = *self.drill.settings(0);
+        let cost = cost::transition(self.drill.skill(), lanes_of(hidden), self.drill.inputs_seen(), optimiser);
+        Some((cost, Limit::MultiplyAdd, Some(Limit::FarUpdate)))
     }
 
     fn run(&self, executor: &mut Executor, _sample: u32) -> Result<Option<Done>, BenchError> {
@@ -220,12 +228,19 @@ pub struct Hierarchy {
 }
 
 impl Hierarchy {
-    /// The arm `hierarchical`, with as many seeds as `learners`.
+    /// The arm `hierarchical` of a shipped config, at the thresholds of [`HIERARCHY`], with as many seeds as `learners`.
     ///
     /// # Errors
     /// Where the built-in config cannot be read or its teacher fails.
-    pub fn new(learners: u32) -> Result<Self, BenchError> {
-        let plan = workload::plan(HIERARCHY, &["arms=[\"hierarchical\"]", "teacher.episodes=1"], learners)?;
+    pub fn new(config: &str, learners: u32) -> Result<Self, BenchError> {
+        let mut set = vec!["arms=[\"hierarchical\"]", "teacher.episodes=1"];
+        if config == THRESHOLDS {
+            set.extend([
+                "sweep.skill.recharge.applicable.dock=[0.15]",
+                "sweep.skill.recharge.applicable.pass-door=[0.4]",
+            ]);
+        }
+        let plan = workload::plan(config, &set, learners)?;
         let group = groups(&plan)?.swap_remove(0);
         Ok(Self { plan, group })
     }
@@ -295,6 +310,7 @@ impl Task for Decisions<'_> {
 /// A whole training of the hierarchy, tests and all.
 #[derive(Debug)]
 pub struct Learners<'a> {
+    name: &'static str,
     hierarchy: &'a Hierarchy,
     host: u32,
     device: u32,
@@ -302,20 +318,30 @@ pub struct Learners<'a> {
 
 impl<'a> Learners<'a> {
     /// `host` learners on the CPU, `device` on a graphics card; software adapters would take too long.
-    pub fn new(hierarchy: &'a Hierarchy, host: u32, device: u32) -> Self {
-        Self { hierarchy, host, device }
+    pub fn new(name: &'static str, hierarchy: &'a Hierarchy, host: u32, device: u32) -> Self {
+        Self { name, hierarchy, host, device }
     }
 }
 
 impl Task for Learners<'_> {
     fn name(&self) -> &'static str {
-        "learners"
+        self.name
     }
 
     fn about(&self) -> String {
         let skills = &self.hierarchy.plan.arms[0].skills;
         let trials: u32 = skills.iter().map(|skill| skill.trials).sum();
-        format!("one learner from its first lesson to its last test: {} skills, {trials} trials", skills.len())
+        let learning = &skills[skills.len() - 1].learning;
+        let rule = match learning.optimiser {
+            Optimiser::Sgd { .. } => "gradient descent",
+            Optimiser::Adam { rows: false, .. } => "Adam",
+            Optimiser::Adam { rows: true, .. } => "Adam with one second moment a row",
+        };
+        format!(
+            "one learner from its first lesson to its last test: {} skills, {trials} trials, {} hidden units, {rule}",
+            skills.len(),
+            learning.hidden
+        )
     }
 
     fn cost(&self) -> Option<(Cost, Limit, Option<Limit>)> {

@@ -7,9 +7,10 @@ use std::fs;
 use std::path::Path;
 
 /// The shipped files that benchmarks need.
-const FILES: [(&str, &str); 3] = [
+const FILES: [(&str, &str); 4] = [
     (DOCKING, include_str!("../../configs/docking.toml")),
     (HIERARCHY, include_str!("../../configs/lin1993.toml")),
+    (THRESHOLDS, include_str!("../../configs/thresholds.toml")),
     ("worlds/office.toml", include_str!("../../configs/worlds/office.toml")),
 ];
 
@@ -17,6 +18,8 @@ const FILES: [(&str, &str); 3] = [
 pub const DOCKING: &str = "docking.toml";
 /// The whole paper.
 pub const HIERARCHY: &str = "lin1993.toml";
+/// The same with the cheaper learner of large sweeps.
+pub const THRESHOLDS: &str = "thresholds.toml";
 
 /// A shipped config with some keys set, and seeds from 0 to below `seeds`.
 ///
