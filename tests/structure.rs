@@ -77,7 +77,6 @@ const OWN_COMMENTS: &[(&str, &str)] = &[
         "// Results stand by the place of the learner in this dispatch: a test is read back part by part.",
     ),
     ("qnet/backward.wgsl", "// A lane without a hidden unit has no rows."),
-    ("qnet/backward.wgsl", "// A number that the compiler does not know keeps the sums in their lanes."),
     ("qnet/forward.wgsl", "// The last one stands in for who is missing beside it."),
     (
         "skill/observe.wgsl",
@@ -87,6 +86,9 @@ const OWN_COMMENTS: &[(&str, &str)] = &[
 
 /// Functions of a Rust twin alone, and why.
 const OWN_FUNCTIONS: &[(&str, &str)] = &[
+    // Lanes that meet in memory have no sum by value.
+    ("math/lanes.wgsl", "lanes_sum"),
+    ("math/lanes.wgsl", "folded"),
     // A lane has one unit's sum and weights.
     ("qnet/forward.wgsl", "added"),
     ("qnet/backward.wgsl", "units"),

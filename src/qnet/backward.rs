@@ -4,7 +4,7 @@ use super::forward::{FEW, lanes_of, net_of};
 use crate::learner::layout::{LANES, MAX_INPUTS, MAX_ROWS, Settings, SkillPlan};
 use crate::learner::memory::Scratch;
 use crate::math::functions::{flush, reciprocal, reciprocal_sqrt, square_root};
-use crate::math::lanes::{Lanes, lanes_sums};
+use crate::math::lanes::{Lanes, lanes_sum};
 
 /// Gradient descent with momentum.
 pub const OPTIMISER_SGD: u32 = 0;
@@ -94,15 +94,14 @@ pub fn paces<const UNITS: usize>(
     errors: &Errors,
     rate: f32,
 ) {
+    let (mut below, mut above) = ([0.0; UNITS], [0.0; UNITS]);
     for lane in 0..UNITS {
         let activation = scratch.hidden[number as usize][lane];
-        scratch.partials[0][lane] = errors.hidden[lane] * errors.hidden[lane];
-        scratch.partials[1][lane] = activation * activation;
+        below[lane] = errors.hidden[lane] * errors.hidden[lane];
+        above[lane] = activation * activation;
     }
-    // A number that the compiler does not know keeps the sums in their lanes.
-    lanes_sums(&mut scratch.partials, std::hint::black_box(2), UNITS);
-    let hidden = scratch.partials[0][0] * settings.unit_share;
-    let activation = scratch.partials[1][0] * settings.unit_share;
+    let hidden = lanes_sum(&below) * settings.unit_share;
+    let activation = lanes_sum(&above) * settings.unit_share;
     let count = plan.inputs as usize;
     let last = count + 1 + plan.outputs as usize;
     let rest2 = 1.0 - settings.beta2;
