@@ -350,7 +350,9 @@ fn differences_are_named_in_order() {
     says(&other, &format!("lessons word {header} (skill 0, slot 1, end)"));
     let nets = |other: &mut Cohort, word: usize| flip(bytemuck::cast_slice_mut(&mut other.nets), word);
     let rows = plan.rows as usize;
-    let weight = |child: usize, slab: usize, row: usize, unit: usize| ((child * 3 + slab) * rows + row) * 32 + unit;
+    // Half a row stays free between two nets.
+    let weight =
+        |child: usize, slab: usize, row: usize, unit: usize| ((child * 3 + slab) * rows + row) * 32 + child * 16 + unit;
     let inputs = plan.inputs as usize;
     for (word, text) in [
         (plan.clock_offset as usize + 18, "child 2, clock of second moments".to_owned()),
@@ -359,6 +361,7 @@ fn differences_are_named_in_order() {
         (weight(4, 1, inputs + 2, 0), "child 4, first moment of the output bias, unit 0".to_owned()),
         (weight(2, 0, inputs + 1, 6), "child 2, output weight, unit 6".to_owned()),
         (weight(2, 0, 17, 5), "child 2, weight of input 17, unit 5".to_owned()),
+        (weight(2, 0, 0, 0) - 1, "between nets".to_owned()),
     ] {
         nets(&mut other, at(cohort.nets_stride, word));
         says(&other, &format!("nets word {word} (skill 0, {text})"));

@@ -10,7 +10,7 @@ fn lanes_of(hidden_units: u32) -> u32 {
 }
 
 fn net_of(skill: u32, base: u32, net: u32) -> u32 {
-    return base + skills[skill].nets_offset + net * 3u * skills[skill].rows * LANES;
+    return base + skills[skill].nets_offset + net * (3u * skills[skill].rows * LANES + FEW);
 }
 
 fn layer(lane: u32, units: u32, skill: u32, base: u32) {

@@ -11,6 +11,7 @@ use crate::learner::layout::{
 };
 use crate::learner::phase::PHASE_FAILED;
 use crate::qnet::backward::CLOCK_SECOND;
+use crate::qnet::forward::net_of;
 use std::fmt;
 
 /// What outputs hold before a kernel writes them: a NaN that no arithmetic makes.
@@ -142,9 +143,14 @@ fn nets_word(skills: &[SkillPlan], word: usize) -> Place {
         let (order, net) = if lane < CLOCK_SECOND as usize { ("first", lane) } else { ("second", lane - 16) };
         format!("{}, clock of {order} moments", whose(net))
     } else {
-        let within = word - plan.nets_offset as usize;
+        let start = |net: &u32| net_of(plan, 0, *net) as usize;
+        let net = (0..plan.nets).rfind(|net| start(net) <= word).unwrap_or(0);
+        let within = word.saturating_sub(start(&net));
         let slab = plan.rows as usize * LANES;
-        let (net, slabs, row, unit) = (within / (3 * slab), within / slab % 3, within % slab / LANES, within % LANES);
+        let Some(kind) = SLABS.get(within / slab) else {
+            return (format!("nets word {word} (skill {skill}, between nets)"), true);
+        };
+        let (row, unit) = (within % slab / LANES, within % LANES);
         let (inputs, last) = (plan.inputs as usize, plan.rows as usize - 1);
         let what = match row {
             row if row < inputs => format!("weight of input {row}"),
@@ -153,7 +159,7 @@ fn nets_word(skills: &[SkillPlan], word: usize) -> Place {
             row if shared => format!("output weight of child {}", row - inputs - 1),
             _ => "output weight".to_owned(),
         };
-        format!("{}, {}{what}, unit {unit}", whose(net), SLABS[slabs])
+        format!("{}, {kind}{what}, unit {unit}", whose(net as usize))
     };
     (format!("nets word {word} (skill {skill}, {text})"), true)
 }

@@ -14,6 +14,7 @@ use crate::backend::{Backend, Cohort, Stop};
 use crate::config::plan::{Child, Plan, Threshold};
 use crate::learner::layout::{Cursor, LANES, ROW_WORDS, SkillPlan};
 use crate::learner::phase::PHASE_FAILED;
+use crate::qnet::forward::net_of;
 use crate::record::Failure;
 
 /// A learner that has learned everything below the root.
@@ -236,6 +237,6 @@ pub(super) fn weight_count(skills: &[SkillPlan]) -> usize {
 fn places(skills: &[SkillPlan]) -> impl Iterator<Item = (usize, usize)> {
     skills.iter().filter(|skill| skill.mirrored == 0).flat_map(|skill| {
         let slab = skill.rows as usize * LANES;
-        (0..skill.nets as usize).map(move |net| (skill.nets_offset as usize + net * 3 * slab, slab))
+        (0..skill.nets as usize).map(move |net| (net_of(skill, 0, net as u32) as usize, slab))
     })
 }

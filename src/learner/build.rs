@@ -66,7 +66,7 @@ impl Shape {
                 }
                 None => {
                     plan.nets_offset = shape.nets_stride as u32;
-                    plan.clock_offset = plan.nets_offset + plan.nets * 3 * plan.rows * LANES as u32;
+                    plan.clock_offset = net_of(&plan, 0, plan.nets);
                     shape.nets_stride = plan.clock_offset as usize + LANES;
                 }
             }

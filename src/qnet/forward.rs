@@ -15,9 +15,12 @@ pub fn lanes_of(hidden: u32) -> usize {
 }
 
 /// Word at which net number `net` stands; its three slabs follow one another.
+///
+/// Between two nets half a row stays free. That is a line of the CPU's cache: nets of few units, which use the first half
+/// of each row, would otherwise share every other line and leave the rest idle.
 #[inline(always)]
 pub fn net_of(skill: &SkillPlan, base: u32, net: u32) -> u32 {
-    base + skill.nets_offset + net * 3 * skill.rows * LANES as u32
+    base + skill.nets_offset + net * (3 * skill.rows * LANES as u32 + FEW as u32)
 }
 
 /// The units' sums with one more input. By value, which keeps them in the machine's lanes.

@@ -13,6 +13,7 @@ use skilltree::experiment::train::train;
 use skilltree::learner::layout::{Cursor, Episode, LESSON_HEADER, Robot};
 use skilltree::learner::memory::Shared;
 use skilltree::learner::phase::{PHASE_FAILED, PHASE_REPLAY};
+use skilltree::qnet::forward::net_of;
 use skilltree::record::failures::{Failure, Number, failures_of};
 use skilltree::record::tables::{EVALUATIONS, TRIALS, read_evaluations, read_trials};
 use skilltree::record::{FinishedRun, Provenance, RunFolder};
@@ -110,8 +111,7 @@ fn cpu() -> Box<dyn Backend> {
 /// Word of a learner's nets at which the weight of an input to a hidden unit of a child's net stands.
 fn weight(group: &Group, child: usize, input: usize, unit: usize) -> usize {
     let skill = &group.shape.skills[0];
-    // Three slabs for each net: weights, and two of the optimiser.
-    skill.nets_offset as usize + 32 * (child * 3 * skill.rows as usize + input) + unit
+    net_of(skill, 0, child as u32) as usize + 32 * input + unit
 }
 
 /// Trains the plan's learners with one of them poisoned before its third trial.
