@@ -70,11 +70,6 @@ impl FinishedRun {
         &self.world
     }
 
-    /// Path of a result file, or none if the run has no such file.
-    pub fn path(&self, name: &str) -> Option<PathBuf> {
-        self.manifest.files.contains_key(name).then(|| self.dir.join(name))
-    }
-
     /// Content of a result file, or none if the run has no such file. What comes out has the hash that the manifest
     /// states, whatever became of the file since the folder was opened.
     ///
