@@ -2,8 +2,8 @@
 //!
 //! For `probe`, benchmarks and callers that decide for themselves. Twin: `shaders/step.wgsl`.
 
-use crate::learner::layout::{BASE_WORDS, Noise, Robot};
-use crate::learner::memory::{Scratch, Shared};
+use crate::learner::layout::{BASE_WORDS, Noise, RECORD_WORDS, Robot};
+use crate::learner::memory::Shared;
 use crate::math::rng::{Purpose, Stream, noise, roll};
 use crate::robot::motion::{NO_ACTION, move_body};
 use crate::skill::observe::{DICE_ACTUATOR, observe};
@@ -14,7 +14,7 @@ use crate::skill::observe::{DICE_ACTUATOR, observe};
 /// many turns, and most calls want one.
 #[inline(always)]
 pub fn step(robot: &mut Robot, shared: &Shared) {
-    let mut scratch = Scratch::default();
+    let mut record = [0; RECORD_WORDS];
     let terms = Noise {
         kind: robot.noise_kind,
         actuator: robot.noise_actuator,
@@ -39,9 +39,9 @@ pub fn step(robot: &mut Robot, shared: &Shared) {
         robot.bumpers = moved.bumpers;
         robot.events = moved.events;
     }
-    observe(shared, &mut scratch, &dice, robot.x, robot.y, robot.heading, robot.bumpers, terms);
+    observe(shared, &mut record, &dice, robot.x, robot.y, robot.heading, robot.bumpers, terms);
     robot.step += 1;
     for word in 0..BASE_WORDS {
-        robot.record[word] = scratch.record[word];
+        robot.record[word] = record[word];
     }
 }

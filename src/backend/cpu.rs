@@ -50,16 +50,14 @@ impl Instructions {
     fn detect() -> Self {
         #[cfg(target_arch = "x86_64")]
         {
-            let bits = is_x86_feature_detected!("bmi1") && is_x86_feature_detected!("bmi2");
-            if bits
-                && is_x86_feature_detected!("avx512f")
+            if is_x86_feature_detected!("avx512f")
                 && is_x86_feature_detected!("avx512vl")
                 && is_x86_feature_detected!("avx512dq")
                 && is_x86_feature_detected!("avx512bw")
             {
                 return Self::Avx512;
             }
-            if bits && is_x86_feature_detected!("avx2") {
+            if is_x86_feature_detected!("avx2") {
                 return Self::Avx2;
             }
         }
@@ -84,14 +82,14 @@ impl Instructions {
 macro_rules! dispatched {
     ($(#[$doc:meta])* $name:ident, $avx2:ident, $avx512:ident = $twin:ident($($argument:ident: $kind:ty),*)) => {
         #[cfg(target_arch = "x86_64")]
-        #[target_feature(enable = "avx2,bmi1,bmi2")]
+        #[target_feature(enable = "avx2")]
         fn $avx2($($argument: $kind),*) {
             black_box(&Vector::zeroed());
             $twin($($argument),*);
         }
 
         #[cfg(target_arch = "x86_64")]
-        #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,bmi1,bmi2")]
+        #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw")]
         fn $avx512($($argument: $kind),*) {
             black_box(&Vector::zeroed());
             $twin($($argument),*);

@@ -32,8 +32,9 @@ pub struct Floor {
     cells: Vec<Cell>,
 }
 
-/// The coordinates of up to 8 segments; see [`Segment`].
+/// The coordinates of up to 8 segments; see [`Segment`]. Aligned, for none of them to lie across two lines of the cache.
 #[derive(Debug, Clone, Copy)]
+#[repr(C, align(64))]
 pub struct SegmentBlock {
     /// Start.
     pub ax: [f32; BLOCK],

@@ -40,7 +40,7 @@ pub fn place(agent: &mut Agent, shared: &Shared, pose: Pose) {
 #[inline(always)]
 pub fn sense(agent: &mut Agent, shared: &Shared, scratch: &mut Scratch, settings: &Settings, dice: &Dice) {
     let terms = noise_of(settings);
-    observe(shared, scratch, dice, agent.x, agent.y, agent.heading, agent.bumpers, terms);
+    observe(shared, &mut scratch.record, dice, agent.x, agent.y, agent.heading, agent.bumpers, terms);
     agent.events |= beside(&scratch.record, settings.beside_near, settings.beside_far, agent.action, agent.events);
     agent.earned = reward_of(settings, agent.events);
     agent.reward += agent.earned;

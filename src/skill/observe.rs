@@ -3,8 +3,8 @@
 //! A record's words: 0 to 5 the 24 sonar readings, a byte each; 6 the light bits and, from bit 24, the
 //! bumpers; 7 the compass; 8 what was done (see `lesson/record`); 9 the reward.
 
-use crate::learner::layout::{LANES, Noise, RAYS};
-use crate::learner::memory::{Scratch, Shared};
+use crate::learner::layout::{LANES, Noise, RAYS, RECORD_WORDS};
+use crate::learner::memory::Shared;
 use crate::math::functions::{sin_cos, wrap_degrees};
 use crate::math::lanes::lanes_or;
 use crate::math::rng::{Dice, bearing_words, coarse_noise, draws, noise};
@@ -26,7 +26,7 @@ pub const DICE_LIGHT: u32 = 16;
 #[expect(clippy::too_many_arguments, reason = "the twin of a shader function, which has no methods")]
 pub fn observe(
     shared: &Shared,
-    scratch: &mut Scratch,
+    record: &mut [u32; RECORD_WORDS],
     dice: &Dice,
     x: f32,
     y: f32,
@@ -62,14 +62,14 @@ pub fn observe(
     }
     let readings = readings.map(|reading| reading as u8);
     for word in 0..6 {
-        scratch.record[word] = u32::from_le_bytes([
+        record[word] = u32::from_le_bytes([
             readings[word * 4],
             readings[word * 4 + 1],
             readings[word * 4 + 2],
             readings[word * 4 + 3],
         ]);
     }
-    scratch.record[6] = lit | bumpers << 24;
+    record[6] = lit | bumpers << 24;
     let error = noise(terms.kind, dice.x[DICE_COMPASS], dice.y[DICE_COMPASS]);
-    scratch.record[7] = wrap_degrees(heading + terms.compass * error).to_bits();
+    record[7] = wrap_degrees(heading + terms.compass * error).to_bits();
 }

@@ -60,7 +60,7 @@ fn turning_in_place_by_steps_of_the_sonar_changes_nothing() {
         poses += 1;
         let look = |heading: f32| {
             let mut scratch = scratch_of(&[]);
-            observe(&shared, &mut scratch, &dice(0, 0), at[0] as f32, at[1] as f32, heading, 0, terms);
+            observe(&shared, &mut scratch.record, &dice(0, 0), at[0] as f32, at[1] as f32, heading, 0, terms);
             encode(&bench.shared, &mut scratch, &bench.shared.skills[root], false);
             scratch
         };
