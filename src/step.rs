@@ -41,7 +41,5 @@ pub fn step(robot: &mut Robot, shared: &Shared) {
     }
     observe(shared, &mut record, &dice, robot.x, robot.y, robot.heading, robot.bumpers, terms);
     robot.step += 1;
-    for word in 0..BASE_WORDS {
-        robot.record[word] = record[word];
-    }
+    robot.record[..BASE_WORDS].copy_from_slice(&record[..BASE_WORDS]);
 }
