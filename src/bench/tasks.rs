@@ -228,7 +228,7 @@ pub struct Hierarchy {
 }
 
 impl Hierarchy {
-    /// The arm `hierarchical` of a shipped config, at the thresholds of [`HIERARCHY`], with as many seeds as `learners`.
+    /// The arm `hierarchical` of a shipped config, at the thresholds of [`workload::HIERARCHY`], with as many seeds as `learners`.
     ///
     /// # Errors
     /// Where the built-in config cannot be read or its teacher fails.
