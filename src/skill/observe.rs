@@ -60,14 +60,13 @@ pub fn observe(
             lit = lanes_or(&bits);
         }
     }
-    let readings = readings.map(|reading| reading as u8);
+    let mut bytes = [0_u8; LANES];
+    for lane in 0..LANES {
+        bytes[lane] = readings[lane] as u8;
+    }
     for word in 0..6 {
-        record[word] = u32::from_le_bytes([
-            readings[word * 4],
-            readings[word * 4 + 1],
-            readings[word * 4 + 2],
-            readings[word * 4 + 3],
-        ]);
+        record[word] =
+            u32::from_le_bytes([bytes[word * 4], bytes[word * 4 + 1], bytes[word * 4 + 2], bytes[word * 4 + 3]]);
     }
     record[6] = lit | bumpers << 24;
     let error = noise(terms.kind, dice.x[DICE_COMPASS], dice.y[DICE_COMPASS]);
