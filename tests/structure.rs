@@ -92,6 +92,8 @@ const OWN_FUNCTIONS: &[(&str, &str)] = &[
     // A lane has one unit's sum and weights.
     ("qnet/forward.wgsl", "added"),
     ("qnet/backward.wgsl", "units"),
+    ("qnet/backward.wgsl", "turn"),
+    ("qnet/forward.wgsl", "rows_of"),
     // A workgroup draws a lane's words in that lane.
     ("math/rng.wgsl", "draws"),
     // A lane looks at its own bit.

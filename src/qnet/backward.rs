@@ -147,6 +147,24 @@ fn units<const UNITS: usize>(row: &[f32]) -> [f32; UNITS] {
     own
 }
 
+/// Moves a row of weights at its pace along its mean gradient, which decays and takes in a factor times what the row's
+/// gradient is alike to.
+#[inline(always)]
+fn turn<const UNITS: usize>(
+    means: &mut Lanes,
+    weights: &mut Lanes,
+    (decay, factor, pace): (f32, f32, f32),
+    alike: &[f32; UNITS],
+) {
+    let (mut mean, mut weight) = (units::<UNITS>(means), units::<UNITS>(weights));
+    for lane in 0..UNITS {
+        mean[lane] = flush(decay * mean[lane] + factor * alike[lane]);
+        weight[lane] += pace * mean[lane];
+    }
+    means[..UNITS].copy_from_slice(&mean);
+    weights[..UNITS].copy_from_slice(&weight);
+}
+
 /// Moves net `number`, of which `UNITS` lanes are in use, so that its output `output` changes by about the errors' delta
 /// times the learning rate `pace`.
 #[inline(always)]
@@ -199,26 +217,18 @@ fn learn<const UNITS: usize>(
             let means = means.as_chunks_mut::<LANES>().0;
             let mut chosen = [0.0; LANES];
             chosen[output as usize] = 1.0;
-            let mut turn = |row: usize, alike: &[f32; UNITS]| {
-                let factor = rest1 * scratch.row_factor[row];
-                let step = scratch.row_pace[row];
-                let (mut mean, mut weight) = (units::<UNITS>(&means[row]), units::<UNITS>(&weights[row]));
-                for lane in 0..UNITS {
-                    mean[lane] = flush(beta1 * mean[lane] + factor * alike[lane]);
-                    weight[lane] += step * mean[lane];
-                }
-                means[row][..UNITS].copy_from_slice(&mean);
-                weights[row][..UNITS].copy_from_slice(&weight);
-            };
             let below = units::<UNITS>(&found.hidden);
-            for row in 0..=count {
-                turn(row, &below);
-            }
             let above = units::<UNITS>(&scratch.hidden[number as usize]);
-            for row in count + 1..rows as usize - 1 {
-                turn(row, &above);
+            let chosen = units::<UNITS>(&chosen);
+            for row in 0..count + 1 {
+                let moves = (beta1, rest1 * scratch.row_factor[row], scratch.row_pace[row]);
+                turn(&mut means[row], &mut weights[row], moves, &below);
             }
-            turn(rows as usize - 1, &units::<UNITS>(&chosen));
+            for row in count + 1..rows as usize {
+                let moves = (beta1, rest1 * scratch.row_factor[row], scratch.row_pace[row]);
+                let alike = if row + 1 < rows as usize { &above } else { &chosen };
+                turn(&mut means[row], &mut weights[row], moves, alike);
+            }
         } else {
             let rest2 = 1.0 - beta2;
             let (weights, moments) = nets[net as usize..(net + 3 * slab) as usize].split_at_mut(slab as usize);

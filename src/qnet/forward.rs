@@ -23,6 +23,13 @@ pub fn net_of(skill: &SkillPlan, base: u32, net: u32) -> u32 {
     base + skill.nets_offset + net * (3 * skill.rows * LANES as u32 + FEW as u32)
 }
 
+/// The rows of net number `net`, and what lies behind them.
+#[inline(always)]
+fn rows_of<'a>(nets: &'a [f32], skill: &SkillPlan, base: u32, net: u32) -> &'a [Lanes; MAX_ROWS] {
+    let rows = nets[net_of(skill, base, net) as usize..].as_chunks::<LANES>().0;
+    rows.first_chunk().expect("room for the most rows")
+}
+
 /// The units' sums with one more input. By value, which keeps them in the machine's lanes.
 #[inline(always)]
 fn added<const UNITS: usize>(sums: [f32; UNITS], weights: &Lanes, x: f32) -> [f32; UNITS] {
@@ -45,11 +52,12 @@ fn layer<const UNITS: usize, const ABREAST: usize>(nets: &[f32], scratch: &mut S
     let used = ((u64::MAX >> (MAX_INPUTS - inputs)) & !bits) | scratch.set;
     for first in (0..skill.nets).step_by(ABREAST) {
         // The last one stands in for who is missing beside it.
-        let numbers: [u32; ABREAST] = std::array::from_fn(|beside| (first + beside as u32).min(skill.nets - 1));
-        let weights = numbers.map(|number| {
-            let rows = nets[net_of(skill, base, number) as usize..].as_chunks::<LANES>().0;
-            rows.first_chunk::<MAX_ROWS>().expect("room for the most rows")
-        });
+        let mut numbers = [first; ABREAST];
+        let mut weights = [rows_of(nets, skill, base, first); ABREAST];
+        for beside in 1..ABREAST {
+            numbers[beside] = (first + beside as u32).min(skill.nets - 1);
+            weights[beside] = rows_of(nets, skill, base, numbers[beside]);
+        }
         let mut sums = [[0.0; UNITS]; ABREAST];
         for beside in 0..ABREAST {
             sums[beside].copy_from_slice(&weights[beside][inputs][..UNITS]);
