@@ -99,7 +99,7 @@ type Case<'a> = (&'a dyn Task, Fault, fn() -> Executor);
 
 #[test]
 fn one_wrong_bit_leaves_no_figure() {
-    let hierarchy = Hierarchy::new(HIERARCHY, 2).expect("the built-in experiment");
+    let hierarchy = Hierarchy::new(HIERARCHY, &[], 2).expect("the built-in experiment");
     let cpu = || Executor::of("cpu", Kind::Cpu, 1, Box::new(CpuBackend::new(1, None).expect("a thread")));
     let (steps, replay) = (RobotSteps::new(Size::TINY, 1), Replay::new(Size::TINY, Rule::Adam));
     let (steps, replay) = (steps.expect("robots"), replay.expect("learners"));

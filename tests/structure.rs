@@ -91,6 +91,7 @@ const OWN_FUNCTIONS: &[(&str, &str)] = &[
     ("math/lanes.wgsl", "folded"),
     // A lane has one unit's sum and weights.
     ("qnet/forward.wgsl", "added"),
+    ("qnet/forward.wgsl", "bits_of"),
     ("qnet/backward.wgsl", "units"),
     ("qnet/backward.wgsl", "turn"),
     ("qnet/forward.wgsl", "rows_of"),

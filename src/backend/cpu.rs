@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use std::hint::black_box;
 use std::ops::Range;
 
-/// Quanta of one learner between two looks at the clock: some 10 ms.
+/// Quanta of one learner in a turn: some 10 ms.
 const QUANTA: u32 = 16_384;
 
 /// Learners for each thread that one call of [`Backend::advance`] moves: some tenths of a second. A number and not a
@@ -225,6 +225,7 @@ impl Backend for CpuBackend {
                 .zip(cohort.lessons.par_chunks_mut(cohort.lessons_stride))
                 .zip(cohort.rows.par_chunks_mut(cohort.rows_stride))
                 .for_each_init(Desk::default, |desk, ((((cursor, settings), nets), lessons), rows)| {
+                    // The kernel would leave at once, but its nets would be copied twice for that.
                     if stop.holds(cursor) {
                         return;
                     }

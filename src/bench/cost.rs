@@ -10,8 +10,8 @@
 
 use crate::learner::layout::{LANES, MAX_SKILLS, SkillPlan};
 use crate::math::rng::DICE;
-use crate::qnet::backward::{OPTIMISER_ADAM_ROWS, OPTIMISER_SGD};
-use crate::qnet::forward::FEW;
+use crate::qnet::backward::{OPTIMISER_ADAM_ROWS, OPTIMISER_SGD, ROW_BLOCK};
+use crate::qnet::forward::bits_of;
 use crate::robot::floor::{BLOCK, Floor};
 use crate::robot::light::{falloff, in_sight};
 use crate::robot::sonar::LINE_LANES;
@@ -113,11 +113,14 @@ pub fn transition(skill: &SkillPlan, lanes: usize, seen: f64, optimiser: u32) ->
     let (weight, apart, slabs) = match optimiser {
         OPTIMISER_SGD => (1 + mean + 1, 0, 2),
         // Two means of squares, then square and root once for each row.
-        OPTIMISER_ADAM_ROWS => (mean + 2, 2 * (2 * lanes - 1) + rows.next_multiple_of(FEW) * (1 + square + root), 2),
+        OPTIMISER_ADAM_ROWS => {
+            (mean + 2, 2 * (2 * lanes - 1) + rows.next_multiple_of(ROW_BLOCK) * (1 + square + root), 2)
+        }
         _ => (1 + mean + square + root + 2, 0, 3),
     };
     let forward = forward(skill, lanes, seen);
-    let squares = if optimiser == OPTIMISER_ADAM_ROWS { 2.0 * row_bytes(rows.next_multiple_of(FEW)) } else { 0.0 };
+    let squares =
+        if optimiser == OPTIMISER_ADAM_ROWS { 2.0 * row_bytes(rows.next_multiple_of(ROW_BLOCK)) } else { 0.0 };
     Cost {
         lane_operations: forward.lane_operations + (odds + errors + lanes * rows * weight + apart) as f64,
         bytes: forward.bytes + (2 * slabs * rows) as f64 * row_bytes(lanes) + squares,
@@ -136,7 +139,7 @@ pub fn decision(
 ) -> Cost {
     let watched = (0..root.min(MAX_SKILLS)).filter(|n| (skills[root].watched >> n) & 1 == 1);
     // Bits are left out.
-    let seen = |skill: &SkillPlan| skill.inputs - skill.bits_low.count_ones() - skill.bits_high.count_ones();
+    let seen = |skill: &SkillPlan| skill.inputs - bits_of(skill).count_ones();
     let of = |n: usize| forward(&skills[n], LANES, f64::from(seen(&skills[n])));
     watched.chain([root]).map(of).fold(step(floor, light, places, 0.0), |sum, own| Cost {
         lane_operations: sum.lane_operations + own.lane_operations,

@@ -14,7 +14,7 @@ use crate::lesson::record::CUT;
 use crate::lesson::replay::taught_lesson;
 use crate::math::functions::{exponential, flush, reciprocal, reciprocal_sqrt, square_root, squash};
 use crate::qnet::backward::{CLOCK_SECOND, OPTIMISER_ADAM_ROWS, OPTIMISER_SGD};
-use crate::qnet::forward::{lanes_of, net_of};
+use crate::qnet::forward::{bits_of, lanes_of, net_of};
 use crate::skill::encode::{GROUP_BUMPERS, GROUP_LIGHT, GROUP_SONAR};
 use bytemuck::Zeroable;
 
@@ -108,7 +108,7 @@ impl Drill {
             let steps = shared.bank[at] as usize;
             shared.bank[at + LESSON_HEADER..].chunks(skill.record_words as usize).take(steps)
         });
-        let bits = (u64::from(skill.bits_high) << 32) | u64::from(skill.bits_low);
+        let bits = bits_of(skill);
         let seen = |record: &[u32]| {
             let x = encode(record, skill, &shared.atlas);
             x.iter().enumerate().filter(|(input, x)| (bits >> input) & 1 == 0 || **x != 0.0).count()

@@ -7,7 +7,7 @@ use super::limits::Meter;
 use super::measure::Measured;
 use super::result::{FORMAT, Origin, Report};
 use super::tasks::{Decisions, Hierarchy, Learners, Replay, RobotSteps, Rule, Size, Task};
-use super::workload::{HIERARCHY, THRESHOLDS};
+use super::workload::{HIERARCHY, ONE_POINT, THRESHOLDS};
 use std::time::SystemTime;
 
 /// Whole learners that a graphics card trains at a time, unless told otherwise.
@@ -38,8 +38,8 @@ pub fn run(options: Options, command: &str, note: &mut dyn FnMut(&str)) -> Resul
     let size = options.size.unwrap_or(if card { Size::DEVICE } else { Size::HOST });
     let host = options.learners.unwrap_or(std::thread::available_parallelism().map_or(1, |cores| cores.get() as u32));
     let device = options.learners.unwrap_or(if card { DEVICE_LEARNERS } else { 0 });
-    let hierarchy = Hierarchy::new(HIERARCHY, size.learners.max(host).max(device))?;
-    let lean = if host > 0 { Some(Hierarchy::new(THRESHOLDS, host.max(device))?) } else { None };
+    let hierarchy = Hierarchy::new(HIERARCHY, &[], size.learners.max(host).max(device))?;
+    let lean = if host > 0 { Some(Hierarchy::new(THRESHOLDS, &ONE_POINT, host.max(device))?) } else { None };
     let mut tasks: Vec<Box<dyn Task + '_>> = vec![
         Box::new(RobotSteps::new(size, 1)?),
         Box::new(RobotSteps::new(size, HELD)?),

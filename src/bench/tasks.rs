@@ -7,7 +7,7 @@ use super::executor::{Executor, Kind};
 use super::limits::Limit;
 use super::replay::{Drill, Nets};
 use super::simulate::Walk;
-use super::workload::{self, DOCKING, THRESHOLDS};
+use super::workload::{self, DOCKING};
 use crate::backend::{Cohort, Test};
 use crate::config::plan::{Optimiser, Plan};
 use crate::experiment::group::{Group, LearnerId, groups};
@@ -228,18 +228,12 @@ pub struct Hierarchy {
 }
 
 impl Hierarchy {
-    /// The arm `hierarchical` of a shipped config, at the thresholds of [`workload::HIERARCHY`], with as many seeds as `learners`.
+    /// The arm `hierarchical` of a shipped config with some keys set, with as many seeds as `learners`.
     ///
     /// # Errors
     /// Where the built-in config cannot be read or its teacher fails.
-    pub fn new(config: &str, learners: u32) -> Result<Self, BenchError> {
-        let mut set = vec!["arms=[\"hierarchical\"]", "teacher.episodes=1"];
-        if config == THRESHOLDS {
-            set.extend([
-                "sweep.skill.recharge.applicable.dock=[0.15]",
-                "sweep.skill.recharge.applicable.pass-door=[0.4]",
-            ]);
-        }
+    pub fn new(config: &str, set: &[&str], learners: u32) -> Result<Self, BenchError> {
+        let set = [&["arms=[\"hierarchical\"]", "teacher.episodes=1"], set].concat();
         let plan = workload::plan(config, &set, learners)?;
         let group = groups(&plan)?.swap_remove(0);
         Ok(Self { plan, group })

@@ -20,6 +20,9 @@ pub const DOCKING: &str = "docking.toml";
 pub const HIERARCHY: &str = "lin1993.toml";
 /// The same with the cheaper learner of large sweeps.
 pub const THRESHOLDS: &str = "thresholds.toml";
+/// The point of that sweep that has the thresholds of [`HIERARCHY`].
+pub const ONE_POINT: [&str; 2] =
+    ["sweep.skill.recharge.applicable.dock=[0.15]", "sweep.skill.recharge.applicable.pass-door=[0.4]"];
 
 /// A shipped config with some keys set, and seeds from 0 to below `seeds`.
 ///

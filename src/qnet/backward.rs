@@ -14,7 +14,7 @@ pub const OPTIMISER_ADAM: u32 = 1;
 pub const OPTIMISER_ADAM_ROWS: u32 = 2;
 
 /// Rows whose paces are found together: a divisor of `MAX_ROWS`.
-const BLOCK: usize = 16;
+pub const ROW_BLOCK: usize = 16;
 
 /// Lane of the clock row at which the second moments' decay stands; the first moments' stand from lane 0.
 pub const CLOCK_SECOND: u32 = 16;
@@ -109,12 +109,12 @@ pub fn paces<const UNITS: usize>(
     inputs[..MAX_INPUTS].copy_from_slice(&scratch.inputs);
     let squares = &mut nets[(net + 2 * plan.rows * LANES as u32) as usize..][..MAX_ROWS];
     // Blocks of rows, as many as there are.
-    for block in (0..=last).step_by(BLOCK) {
-        let mut factors = [0.0; BLOCK];
-        let mut moved = units::<BLOCK>(&squares[block..]);
-        let mut paces = [0.0; BLOCK];
-        let x = units::<BLOCK>(&inputs[block..]);
-        for lane in 0..BLOCK {
+    for block in (0..=last).step_by(ROW_BLOCK) {
+        let mut factors = [0.0; ROW_BLOCK];
+        let mut moved = units::<ROW_BLOCK>(&squares[block..]);
+        let mut paces = [0.0; ROW_BLOCK];
+        let x = units::<ROW_BLOCK>(&inputs[block..]);
+        for lane in 0..ROW_BLOCK {
             let row = block + lane;
             let x = if row < count { x[lane] } else { 1.0 };
             let own = row == count + 1 + output as usize || row == last;
@@ -126,9 +126,9 @@ pub fn paces<const UNITS: usize>(
             factors[lane] = factor;
             paces[lane] = rate * reciprocal_sqrt(moved[lane] + settings.epsilon2);
         }
-        squares[block..block + BLOCK].copy_from_slice(&moved);
-        scratch.row_factor[block..block + BLOCK].copy_from_slice(&factors);
-        scratch.row_pace[block..block + BLOCK].copy_from_slice(&paces);
+        squares[block..block + ROW_BLOCK].copy_from_slice(&moved);
+        scratch.row_factor[block..block + ROW_BLOCK].copy_from_slice(&factors);
+        scratch.row_pace[block..block + ROW_BLOCK].copy_from_slice(&paces);
     }
 }
 

@@ -14,6 +14,12 @@ pub fn lanes_of(hidden: u32) -> usize {
     if hidden as usize <= FEW { FEW } else { LANES }
 }
 
+/// Which of a skill's inputs are bits: those of light and bumpers.
+#[inline(always)]
+pub fn bits_of(skill: &SkillPlan) -> u64 {
+    (u64::from(skill.bits_high) << 32) | u64::from(skill.bits_low)
+}
+
 /// Word at which net number `net` stands; its three slabs follow one another.
 ///
 /// Between two nets half a row stays free. That is a line of the CPU's cache: nets of few units, which use the first half
@@ -48,8 +54,7 @@ fn added<const UNITS: usize>(sums: [f32; UNITS], weights: &Lanes, x: f32) -> [f3
 fn layer<const UNITS: usize, const ABREAST: usize>(nets: &[f32], scratch: &mut Scratch, skill: &SkillPlan, base: u32) {
     let inputs = skill.inputs as usize;
     let outputs = skill.outputs as usize;
-    let bits = (u64::from(skill.bits_high) << 32) | u64::from(skill.bits_low);
-    let used = ((u64::MAX >> (MAX_INPUTS - inputs)) & !bits) | scratch.set;
+    let used = ((u64::MAX >> (MAX_INPUTS - inputs)) & !bits_of(skill)) | scratch.set;
     for first in (0..skill.nets).step_by(ABREAST) {
         // The last one stands in for who is missing beside it.
         let mut numbers = [first; ABREAST];
