@@ -11,6 +11,7 @@ use skilltree::experiment::senses::{SILENT, Senses, floor_only, robot_at};
 use skilltree::learner::layout::{RAYS, Robot};
 use skilltree::learner::memory::Shared;
 use skilltree::math::functions::sin_cos;
+use skilltree::math::rng::place_of;
 use skilltree::robot::collide::{bumpers, sweep};
 use skilltree::robot::floor::{Floor, LISTED_TRAVEL};
 use skilltree::robot::light::in_sight;
@@ -57,7 +58,7 @@ impl Place {
         let (sine, cosine) = sin_cos(pose.heading);
         let (ux, uy) = rays(cosine, sine);
         let found = ranges(&self.shared.floor, pose.x, pose.y, &ux, &uy);
-        std::array::from_fn(|ray| found[ray])
+        std::array::from_fn(|ray| found[place_of(ray)])
     }
 }
 

