@@ -103,6 +103,12 @@ const OWN_FUNCTIONS: &[(&str, &str)] = &[
     // They are made when the program is compiled; a lane turns its own ray and sets its own bit.
     ("robot/sonar.wgsl", "ray_table"),
     ("skill/observe.wgsl", "bits"),
+    // A workgroup has one robot.
+    ("step.wgsl", "turn"),
+    ("step.wgsl", "terms_of"),
+    ("step.wgsl", "stream_of"),
+    // A workgroup's lanes write their words themselves.
+    ("skill/observe.wgsl", "packed"),
 ];
 
 #[test]

@@ -23,12 +23,27 @@ fn turn_of(action: u32) -> f32 {
     return select(0.0f, signed, action < FORWARD);
 }
 
+fn heading_after(heading: f32, action: u32, slip: f32) -> f32 {
+    return wrap_degrees(heading + turn_of(action) * slip);
+}
+
 fn move_body(lane: u32, x: f32, y: f32, heading: f32, action: u32, slip: f32) -> Moved {
-    let turned = wrap_degrees(heading + turn_of(action) * slip);
-    let turn = sin_cos(turned);
-    let sine = turn.x;
-    let cosine = turn.y;
-    var moved = Moved(x, y, turned, 0u, 0u);
+    let after = heading_after(heading, action, slip);
+    let turn = sin_cos(after);
+    return go(lane, x, y, after, turn.x, turn.y, action, slip);
+}
+
+fn go(
+    lane: u32,
+    x: f32,
+    y: f32,
+    heading: f32,
+    sine: f32,
+    cosine: f32,
+    action: u32,
+    slip: f32,
+) -> Moved {
+    var moved = Moved(x, y, heading, 0u, 0u);
     if action == FORWARD || action == BACKWARD {
         let ux = select(-cosine, cosine, action == FORWARD);
         let uy = select(-sine, sine, action == FORWARD);

@@ -12,25 +12,38 @@ const DICE_LIGHT: u32 = 16u;
 var<workgroup> record: array<u32, RECORD_WORDS>;
 var<workgroup> readings: array<u32, LANES>;
 
-fn observe(lane: u32, x: f32, y: f32, heading: f32, bumpers: u32, terms: Noise) {
-    let turn = sin_cos(heading);
-    let u = rays(lane, turn.y, turn.x);
-    let range = ranges(lane, x, y, u.x, u.y);
+fn hear(lane: u32, x: f32, y: f32, ux: f32, uy: f32, terms: Noise) -> u32 {
+    let range = ranges(lane, x, y, ux, uy);
     let error = terms.sonar * coarse_noise(terms.kind, bearing_words(DICE_SONAR, lane % RAYS)) + 1.0f;
-    readings[lane] = reading(range, error);
+    return reading(range, error);
+}
+
+fn see(lane: u32, x: f32, y: f32, ux: f32, uy: f32, terms: Noise) -> u32 {
     var lit = 0u;
     if world.lit == 1u {
         let most = falloff(x, y);
         // No noise reaches 3.5.
         if most * (terms.light * 3.5f + 1.0f) > 1.0f && in_sight(lane, x, y) {
-            let ux = select(u.x, -u.x, lane >= LINES);
-            let uy = select(u.y, -u.y, lane >= LINES);
-            let bright = brightness(most, x, y, ux, uy);
+            let facing_x = select(ux, -ux, lane >= LINES);
+            let facing_y = select(uy, -uy, lane >= LINES);
+            let bright = brightness(most, x, y, facing_x, facing_y);
             let shift = coarse_noise(terms.kind, bearing_words(DICE_LIGHT, lane % RAYS));
             let glow = bright * (terms.light * shift + 1.0f);
             lit = lanes_or(lane, select(0u, 1u << lane, glow > 1.0f && lane < RAYS));
         }
     }
+    return lit;
+}
+
+fn compass(heading: f32, error: f32, deviation: f32) -> f32 {
+    return wrap_degrees(heading + deviation * error);
+}
+
+fn observe(lane: u32, x: f32, y: f32, heading: f32, bumpers: u32, terms: Noise) {
+    let turn = sin_cos(heading);
+    let u = rays(lane, turn.y, turn.x);
+    readings[lane] = hear(lane, x, y, u.x, u.y, terms);
+    let lit = see(lane, x, y, u.x, u.y, terms);
     workgroupBarrier();
     if lane < 6u {
         record[lane] = readings[lane * 4u]
@@ -43,7 +56,7 @@ fn observe(lane: u32, x: f32, y: f32, heading: f32, bumpers: u32, terms: Noise) 
     }
     if lane == 7u {
         let error = noise(terms.kind, dice[DICE_COMPASS].x, dice[DICE_COMPASS].y);
-        record[7] = bitcast<u32>(wrap_degrees(heading + terms.compass * error));
+        record[7] = bitcast<u32>(compass(heading, error, terms.compass));
     }
     workgroupBarrier();
 }

@@ -8,7 +8,7 @@ use crate::advance::advance;
 use crate::evaluate::{STATE_CUT, STATE_FRESH, evaluate};
 use crate::learner::layout::{Cursor, Dispatch, Episode, Robot, Settings};
 use crate::learner::memory::{Learner, Shared};
-use crate::step::step;
+use crate::step::{ABREAST, step};
 use bytemuck::{Pod, Zeroable};
 use rayon::prelude::*;
 use std::hint::black_box;
@@ -129,7 +129,7 @@ dispatched! {
 
 dispatched! {
     /// Runs [`step`].
-    run_step, step_avx2, step_avx512 = step(robot: &mut Robot, shared: &Shared)
+    run_step, step_avx2, step_avx512 = step(robots: &mut [Robot], shared: &Shared)
 }
 
 /// A vector of the widest instructions, as it must lie for no access to touch two lines of the cache.
@@ -276,9 +276,9 @@ impl Backend for CpuBackend {
     fn step(&mut self, shared: &Shared, robots: &mut [Robot], quanta: u32) -> Result<(), BackendError> {
         let instructions = self.instructions;
         self.pool.install(|| {
-            robots.par_iter_mut().for_each(|robot| {
+            robots.par_chunks_mut(ABREAST).for_each(|robots| {
                 for _quantum in 0..quanta {
-                    run_step(instructions, robot, shared);
+                    run_step(instructions, robots, shared);
                 }
             });
         });

@@ -9,7 +9,7 @@
 //! the nearest cache.
 
 use crate::learner::layout::{LANES, MAX_SKILLS, SkillPlan};
-use crate::math::rng::DICE;
+use crate::math::rng::{BATCH, DICE};
 use crate::qnet::backward::{OPTIMISER_ADAM_ROWS, OPTIMISER_SGD, ROW_BLOCK};
 use crate::qnet::forward::bits_of;
 use crate::robot::floor::{BLOCK, Floor};
@@ -59,18 +59,17 @@ const TOUCH: usize = 35;
 const SIGHT: usize = 33;
 /// Five rounds that bring 32 lanes together.
 const REDUCE: usize = LANES - 1;
-/// Draws that are made at once for the bearings of the light.
-const LIGHT_DRAWS: usize = 8;
 
 /// A step of a robot: all random numbers, contact, bumpers, 24 ranges, light and compass; mean over the places where
-/// robots are. `light` is the noise of the light, `moves` the share of actions that travel.
-pub fn step(floor: &Floor, light: f32, places: impl Iterator<Item = (f32, f32)>, moves: f64) -> Cost {
+/// robots are. `light` is the noise of the light, `moves` the share of actions that travel, `dice` the draws that are made
+/// on every step.
+pub fn step(floor: &Floor, light: f32, places: impl Iterator<Item = (f32, f32)>, moves: f64, dice: usize) -> Cost {
     let (mut sum, mut count) = (0.0, 0_u32);
     for (x, y) in places {
         sum += step_at(floor, light, x, y, moves);
         count += 1;
     }
-    Cost { lane_operations: sum / f64::from(count.max(1)), bytes: 0.0 }
+    Cost { lane_operations: (dice * DRAW) as f64 + sum / f64::from(count.max(1)), bytes: 0.0 }
 }
 
 fn step_at(floor: &Floor, light: f32, x: f32, y: f32, moves: f64) -> f64 {
@@ -87,10 +86,10 @@ fn step_at(floor: &Floor, light: f32, x: f32, y: f32, moves: f64) -> f64 {
         lit += floor.hiding(x, y).len() * BLOCK * SIGHT + BLOCK;
         if in_sight(floor, x, y) {
             // Direction 4; exponent 2, brightness 1, noise 3, bit 4.
-            lit += LINE_LANES * 4 + LANES * (2 + EXPONENTIAL + 1 + NOISE + 3 + 4) + REDUCE + LIGHT_DRAWS * DRAW;
+            lit += LINE_LANES * 4 + LANES * (2 + EXPONENTIAL + 1 + NOISE + 3 + 4) + REDUCE + BATCH * DRAW;
         }
     }
-    (DICE * DRAW + bumpers + rays + ranges + readings + lit) as f64 + moves * sweep as f64
+    (bumpers + rays + ranges + readings + lit) as f64 + moves * sweep as f64
 }
 
 /// All nets of a skill forwards: weights read once. `lanes` of each row are in use, and on average `seen` of the inputs:
@@ -141,7 +140,7 @@ pub fn decision(
     // Bits are left out.
     let seen = |skill: &SkillPlan| skill.inputs - bits_of(skill).count_ones();
     let of = |n: usize| forward(&skills[n], LANES, f64::from(seen(&skills[n])));
-    watched.chain([root]).map(of).fold(step(floor, light, places, 0.0), |sum, own| Cost {
+    watched.chain([root]).map(of).fold(step(floor, light, places, 0.0, DICE), |sum, own| Cost {
         lane_operations: sum.lane_operations + own.lane_operations,
         bytes: sum.bytes + own.bytes,
     })

@@ -13,6 +13,7 @@ use crate::config::plan::{Optimiser, Plan};
 use crate::experiment::group::{Group, LearnerId, groups};
 use crate::experiment::train::train;
 use crate::learner::layout::Settings;
+use crate::math::rng::BATCH;
 use crate::qnet::backward::{OPTIMISER_ADAM_ROWS, OPTIMISER_SGD};
 use crate::qnet::forward::lanes_of;
 use glam::Vec2;
@@ -106,7 +107,7 @@ impl Task for RobotSteps {
         let Walk { shared, robots, .. } = &self.walk;
         let light = robots.first().map_or(0.0, |robot| robot.noise_light);
         let places = robots.iter().map(|robot| (robot.x, robot.y));
-        Some((cost::step(&shared.floor, light, places, 1.0 / 3.0), Limit::CompareSelect, None))
+        Some((cost::step(&shared.floor, light, places, 1.0 / 3.0, BATCH), Limit::CompareSelect, None))
     }
 
     fn run(&self, executor: &mut Executor, sample: u32) -> Result<Option<Done>, BenchError> {

@@ -96,7 +96,7 @@ pub fn draw(stream: Stream, draw: u32) -> [u32; 4] {
 }
 
 /// Draws of which one vector of 64-bit products holds all.
-const BATCH: usize = 8;
+pub const BATCH: usize = 8;
 
 /// Draws number `first` to `first` + 7 of a stream: word `w` of draw `first` + `i` is `[w][i]`.
 #[inline(always)]

@@ -44,12 +44,25 @@ pub fn turn_of(action: u32) -> f32 {
     if action < FORWARD { signed } else { 0.0 }
 }
 
+/// Heading after an action whose length is off by the factor `slip`, degrees.
+#[inline(always)]
+pub fn heading_after(heading: f32, action: u32, slip: f32) -> f32 {
+    wrap_degrees(heading + turn_of(action) * slip)
+}
+
 /// Carries out an action whose length is off by the factor `slip`.
 #[inline(always)]
 pub fn move_body(floor: &Floor, x: f32, y: f32, heading: f32, action: u32, slip: f32) -> Moved {
-    let turned = wrap_degrees(heading + turn_of(action) * slip);
-    let (sine, cosine) = sin_cos(turned);
-    let mut moved = Moved { x, y, heading: turned, bumpers: 0, events: 0 };
+    let after = heading_after(heading, action, slip);
+    let (sine, cosine) = sin_cos(after);
+    go(floor, x, y, after, sine, cosine, action, slip)
+}
+
+/// What is left of an action once the robot has its new `heading`, which comes with its sine and cosine.
+#[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "the twin of a shader function, which has no methods")]
+pub fn go(floor: &Floor, x: f32, y: f32, heading: f32, sine: f32, cosine: f32, action: u32, slip: f32) -> Moved {
+    let mut moved = Moved { x, y, heading, bumpers: 0, events: 0 };
     let wanted = 12.0 * slip;
     let reach = if wanted > 0.0 { wanted } else { 0.0 };
     let near = floor.touchable(x, y, reach);
