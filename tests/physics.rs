@@ -6,16 +6,17 @@ mod oracle;
 use oracle::{Field, P, Written, ahead, office, stream};
 use skilltree::backend::Backend;
 use skilltree::backend::cpu::CpuBackend;
+use skilltree::backend::parity::{self, UNWRITTEN};
 use skilltree::config::plan::{Noise, NoiseKind};
 use skilltree::experiment::senses::{SILENT, Senses, floor_only, robot_at};
-use skilltree::learner::layout::{RAYS, Robot};
+use skilltree::learner::layout::{BASE_WORDS, RAYS, Robot};
 use skilltree::learner::memory::Shared;
 use skilltree::math::functions::sin_cos;
 use skilltree::math::rng::place_of;
 use skilltree::robot::collide::{bumpers, sweep};
 use skilltree::robot::floor::{Floor, LISTED_TRAVEL};
 use skilltree::robot::light::in_sight;
-use skilltree::robot::motion::{BACKWARD, COLLISION, DOCKED, FORWARD, Moved, PASSED_DOOR, move_body};
+use skilltree::robot::motion::{BACKWARD, COLLISION, DOCKED, FORWARD, Moved, NO_ACTION, PASSED_DOOR, move_body};
 use skilltree::robot::sonar::{ranges, rays};
 use skilltree::skill::reward::{passed_door, room_of};
 use skilltree::world::{Pose, World};
@@ -715,6 +716,40 @@ fn noise_has_the_stated_mean_deviation_and_bounds() {
     let quiet = crowd(FORWARD, &SILENT, 100);
     assert!(quiet.iter().all(|r| (r.x, r.y, r.heading) == (72.0, 60.0, 0.0)));
     assert!(quiet.iter().all(|r| Senses::of(r).compass == 0.0 && Senses::of(r).sonar[0] == 48));
+}
+
+/// The CPU moves robots side by side: in any number, with and without an action, and with anything in what a step writes.
+#[test]
+fn a_robot_among_others_is_the_robot_alone() {
+    let place = &offices()[0];
+    let noise = Noise { kind: NoiseKind::Gaussian, actuator: 0.08, sonar: 0.10, light: 0.10, compass: 2.865 };
+    let mut next = stream(31);
+    let mut robot = |number: u32| {
+        let kind = if number % 5 == 1 { NoiseKind::Uniform } else { NoiseKind::Gaussian };
+        let mut robot = robot_at(place.pose(&mut next, 0.0), &Noise { kind, ..noise }, 7, number);
+        robot.action = if number % 7 == 6 { NO_ACTION } else { number % 6 };
+        robot.record = [UNWRITTEN; BASE_WORDS];
+        robot
+    };
+    let robots: Vec<Robot> = (0..75).map(&mut robot).collect();
+    let alone: Vec<Robot> = robots
+        .iter()
+        .flat_map(|robot| {
+            let mut alone = [*robot];
+            cpu().step(&place.shared, &mut alone, 3).expect("the CPU steps");
+            alone
+        })
+        .collect();
+    // As a workgroup leaves what no step writes.
+    assert!(alone.iter().all(|robot| robot.record[8..] == [0, 0]));
+    assert!(alone.iter().any(|robot| robot.record[6] & 0xff_ffff != 0), "no light was seen");
+    assert!(alone.iter().any(|robot| robot.events == COLLISION), "nothing was touched");
+    for count in [2, 15, 16, 17, 33, 75] {
+        let mut together = robots[..count].to_vec();
+        cpu().step(&place.shared, &mut together, 3).expect("the CPU steps");
+        let same = bytemuck::cast_slice::<_, u8>(&together) == bytemuck::cast_slice::<_, u8>(&alone[..count]);
+        assert!(same, "{:?}", parity::step(&alone[..count], &together));
+    }
 }
 
 /// Share of draws of the sum of four uniforms, centred and of unit deviation, that lie above `z`.
