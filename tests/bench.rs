@@ -11,8 +11,10 @@ use skilltree::bench::measure::Measured;
 use skilltree::bench::result::Report;
 use skilltree::bench::tasks::{Decisions, Hierarchy, Replay, RobotSteps, Rule, Size, Task};
 use skilltree::bench::workload::HIERARCHY;
-use skilltree::learner::layout::{Cursor, Episode, Robot};
+use skilltree::learner::layout::{Cursor, Episode, RAYS, Robot};
 use skilltree::learner::memory::Shared;
+use skilltree::math::rng::{Purpose, place_of};
+use skilltree::skill::observe::{DICE_ACTUATOR, DICE_COMPASS, DICE_LIGHT};
 use std::ops::Range;
 use std::path::Path;
 use std::process::Command;
@@ -309,4 +311,17 @@ fn replay_again(path: &Path) {
         let moved = ours.iter().zip(initial).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(off < 2.0e-5 && moved > 1.0e-3, "{layer}: off by {off}, moved by {moved}");
     }
+}
+
+/// The peers draw the noise that we draw; nothing in CI runs them.
+#[test]
+fn peers_know_which_draws_are_for_what() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/peers/workload.py");
+    let text = std::fs::read_to_string(path).expect("the peers' workload");
+    let told = text.lines().find_map(|line| line.strip_prefix("PURPOSE, SHARED, ACTUATOR, COMPASS, BEAMS = "));
+    let told: Vec<usize> =
+        told.expect("a line with the draws").split(", ").map(|word| word.parse().expect("a number")).collect();
+    // The first bearing that does not stand where its draw does has a word of a draw that another one shares.
+    let shared = (0..RAYS).find(|bearing| place_of(*bearing) != *bearing).expect("a second word");
+    assert_eq!(told, [Purpose::Given as usize, shared, DICE_ACTUATOR, DICE_COMPASS, DICE_LIGHT as usize]);
 }

@@ -3,7 +3,7 @@
 import jax.numpy as jnp
 import numpy as np
 
-from workload import ACTUATOR, COMPASS, LIGHT, PURPOSE, RAYS, SLIP, SONAR, TERM, TURNED
+from workload import ACTUATOR, BEAMS, COARSE, COMPASS, LIGHT, PURPOSE, RAYS, SHARED, SLIP, SONAR, TERM, TURNED
 
 MULTIPLIER = (0xD2511F53, 0xCD9E8D57)
 WEYL = (0x9E3779B9, 0xBB67AE85)
@@ -35,11 +35,23 @@ def term(first, second):
     return (total.astype(jnp.int32) - 131070).astype(jnp.float32) * TERM
 
 
+def coarse(word):
+    """The same from one word: four 8-bit uniforms summed."""
+    pairs = (word & 0xFF00FF) + ((word >> 8) & 0xFF00FF)
+    total = (pairs & 0xFFFF) + (pairs >> 16)
+    return (total.astype(jnp.int32) - 510).astype(jnp.float32) * COARSE
+
+
 def draw(seed, number):
     """A robot's noise at a step: slip, sonar, light, compass."""
-    lane = np.arange(COMPASS + 1, dtype=np.uint32)
-    zero = jnp.zeros_like(lane)
-    x, y, z, w = philox((zero, zero + number, zero + (PURPOSE << 16) + lane, zero), seed)
-    rays, beams = term(x, y), term(z, w)
-    slip, sonar = 1 + SLIP * rays[ACTUATOR], 1 + SONAR * rays[:RAYS]
-    return slip, sonar, 1 + LIGHT * beams[:RAYS], TURNED * rays[COMPASS]
+    zero = jnp.zeros_like(number)
+
+    def words(lane):
+        return philox((zero, number, zero + np.uint32((PURPOSE << 16) + lane), zero), seed)
+
+    def shared(first):
+        drawn = [words(first + lane) for lane in range(SHARED)]
+        return coarse(jnp.stack([drawn[ray % SHARED][ray // SHARED] for ray in range(RAYS)]))
+
+    slip, compass = (term(*words(lane)[:2]) for lane in (ACTUATOR, COMPASS))
+    return 1 + SLIP * slip, 1 + SONAR * shared(0), 1 + LIGHT * shared(BEAMS), TURNED * compass

@@ -154,11 +154,12 @@ def wrap(heading):
 
 
 @compiled
-def step(segment, charger, columns, heard, touched, light, range2, dock_cosine, given, before, after):
-    """All robots carry out one action each and sense."""
+def step(segment, charger, columns, heard, touched, light, range2, dock_cosine, given, drawn, seed, now, before, after):
+    """All robots carry out one action each and sense. Noise of the light is drawn where it is seen."""
     action, slip, sonar_noise, light_noise, compass_noise = given
     pose, compass, sonar, lit, bumped, events = after
     ux, uy, best = np.empty(RAYS, f32), np.empty(RAYS, f32), np.empty(RAYS, f32)
+    words = np.empty((4, noise_numba.LANES), np.uint32)
     for robot in range(len(action)):
         x, y, heading = before[robot]
         act = action[robot]
@@ -189,6 +190,8 @@ def step(segment, charger, columns, heard, touched, light, range2, dock_cosine, 
         if in_sight(segment, charger, x, y, lx, ly):
             distance2 = max(lx * lx + ly * ly, ONE)
             nearness, falloff = ONE / math.sqrt(distance2), range2 / distance2
+            if drawn:
+                noise_numba.draw_light(seed[robot], now, words, light_noise[robot])
             for ray in range(RAYS):
                 aim = (ux[ray] * lx + uy[ray] * ly) * nearness
                 lit[robot, ray] = falloff * math.exp(SHARPNESS * (aim - ONE)) * light_noise[robot, ray] > ONE
@@ -210,18 +213,18 @@ def prepare(work, drawn):
         "events": np.empty((steps, robots), np.uint8),
     }
     given = (work.slip, work.sonar_noise, work.light_noise, work.compass_noise)
-    fresh = tuple(np.empty_like(values[0]) for values in given)
+    fresh = slip, sonar, _, compass = tuple(np.empty_like(values[0]) for values in given)
 
     def run():
         before = work.start
         for now in range(steps):
             after = tuple(sense[now] for sense in senses.values())
             if drawn:
-                noise_numba.draw(work.seed, now, *fresh)
+                noise_numba.draw(work.seed, now, slip, sonar, compass)
             noise = fresh if drawn else tuple(values[now] for values in given)
             step(
                 work.segment, work.charger, columns, heard, touched, work.light, work.light_range2, work.dock_cosine,
-                (work.action[now], *noise), before, after,
+                (work.action[now], *noise), drawn, work.seed, now, before, after,
             )  # fmt: skip
             before = after[0]
         return senses

@@ -11,11 +11,11 @@ import numpy as np
 from safetensors import safe_open
 
 RAYS = 24
-# Which random numbers are for what, and the scale of each noise: shares, and degrees for the compass. See the README
-# beside the files.
-PURPOSE, ACTUATOR, COMPASS = 8, 24, 25
+# Which draws are for what (six are shared by all rays, a word each, and six from BEAMS on by the light's bearings), and the
+# scale of each noise: shares, and degrees for the compass. See the README beside the files.
+PURPOSE, SHARED, ACTUATOR, COMPASS, BEAMS = 8, 6, 6, 7, 16
 SLIP, SONAR, LIGHT, TURNED = np.float32(0.08), np.float32(0.10), np.float32(0.10), np.float32(2.865)
-TERM = np.float32(2.6429e-5)
+TERM, COARSE = np.float32(2.6429e-5), np.float32(6.765875e-3)
 
 
 @dataclass(frozen=True)
