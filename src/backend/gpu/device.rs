@@ -103,16 +103,12 @@ impl Device {
         self.sound(kernel).map(|()| buffer)
     }
 
-    /// Submits commands and waits until they are done.
+    /// Waits until a submission is done, or all are. What fails here stays a fault of the device: of other
+    /// submissions that are on their way nothing is known then.
     ///
     /// # Errors
     /// Where the device fails or does not answer in time.
-    pub fn run(&self, kernel: &'static str, encoder: wgpu::CommandEncoder) -> Result<(), BackendError> {
-        let submission = self.queue.submit([encoder.finish()]);
-        self.wait(kernel, Some(submission))
-    }
-
-    fn wait(&self, kernel: &'static str, submission: Option<wgpu::SubmissionIndex>) -> Result<(), BackendError> {
+    pub fn wait(&self, kernel: &'static str, submission: Option<wgpu::SubmissionIndex>) -> Result<(), BackendError> {
         let wait = wgpu::PollType::Wait { submission_index: submission, timeout: Some(DEADLINE) };
         // wgpu panics where the device is lost while it waits; a lost device is an error here.
         let polled = catch_unwind(AssertUnwindSafe(|| self.device.poll(wait)));
@@ -123,7 +119,8 @@ impl Device {
             Ok(Err(error)) => error.to_string(),
             Err(_) => "the device was lost".to_owned(),
         };
-        Err(BackendError::Device { kernel, message })
+        note(&self.fault, message);
+        self.sound(kernel)
     }
 
     /// Copies bytes to the start of a buffer.

@@ -33,6 +33,13 @@ pub struct Share {
     pub quanta: u32,
 }
 
+impl Share {
+    /// Quanta of all workgroups.
+    pub fn work(self) -> u64 {
+        u64::from(self.groups) * u64::from(self.quanta)
+    }
+}
+
 impl Governor {
     /// A governor that uses `fixed` quanta if given, and never more than `ceiling`.
     pub fn new(fixed: Option<u32>, ceiling: u32) -> Self {
@@ -54,9 +61,10 @@ impl Governor {
     }
 
     /// Learns from a dispatch. `busy` says whether most of its workgroups had work to the end: one that was
-    /// over early says nothing about how long a full one would take.
+    /// over early says nothing about how long a full one would take. Work grows to twice what was done and not what
+    /// is allowed by now, as others of the same size may have ended since.
     pub fn took(&mut self, share: Share, elapsed: Duration, busy: bool) {
-        let done = u64::from(share.groups) * u64::from(share.quanta);
+        let done = share.work();
         let seconds = elapsed.as_secs_f64().max(1.0e-4);
         let fits = (done as f64 * AIM.as_secs_f64() / seconds) as u64;
         if elapsed > CAP {
@@ -64,7 +72,7 @@ impl Governor {
         } else if fits < self.work {
             self.work = fits.max(1);
         } else if busy {
-            self.work = fits.min(self.work.saturating_mul(2));
+            self.work = fits.min(done.saturating_mul(2)).max(self.work);
         }
     }
 }
@@ -205,6 +213,20 @@ mod tests {
         assert_eq!(ceiling(None, 400), u32::MAX);
         assert_eq!(ceiling(Some(65_535), 400), 75);
         assert_eq!(ceiling(Some(65_535), 90_000), 1);
+    }
+
+    /// Several in flight have the size that was right for the first of them: each must not double it again.
+    #[test]
+    fn dispatches_of_one_size_let_the_next_grow_once() {
+        let mut governor = Governor::new(None, u32::MAX);
+        let share = governor.share(64);
+        for _ in 0..5 {
+            governor.took(share, Duration::from_micros(200), true);
+        }
+        assert_eq!(governor.share(64).work(), 2 * share.work());
+        // One that was cut short, by a robot's last step or a shard's last learner, takes nothing back.
+        governor.took(Share { groups: 3, quanta: 1 }, Duration::from_micros(200), true);
+        assert_eq!(governor.share(64).work(), 2 * share.work());
     }
 
     #[test]

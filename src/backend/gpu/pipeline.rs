@@ -81,11 +81,13 @@ impl Pipeline {
         })
     }
 
-    /// Dispatches workgroups and waits until they are done.
-    ///
-    /// # Errors
-    /// Where the device fails.
-    pub fn dispatch(&self, device: &Device, bind_group: &wgpu::BindGroup, x: u32, y: u32) -> Result<(), BackendError> {
+    /// The kernel's name.
+    pub fn name(&self) -> &'static str {
+        self.kernel.name
+    }
+
+    /// Dispatches workgroups along both axes. It is done when the submission is.
+    pub fn submit(&self, device: &Device, bind_group: &wgpu::BindGroup, (x, y): (u32, u32)) -> wgpu::SubmissionIndex {
         let mut encoder = device.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
@@ -96,7 +98,16 @@ impl Pipeline {
             pass.set_bind_group(0, bind_group, &[]);
             pass.dispatch_workgroups(x, y, 1);
         }
-        device.run(self.kernel.name, encoder)
+        device.queue.submit([encoder.finish()])
+    }
+
+    /// Dispatches workgroups and waits until they are done.
+    ///
+    /// # Errors
+    /// Where the device fails.
+    pub fn dispatch(&self, device: &Device, bind_group: &wgpu::BindGroup, x: u32, y: u32) -> Result<(), BackendError> {
+        let submission = self.submit(device, bind_group, (x, y));
+        device.wait(self.kernel.name, Some(submission))
     }
 }
 
