@@ -1,7 +1,7 @@
 //! The GPU backend: the kernels on any adapter of Vulkan, Metal or DX12.
 //!
-//! Learners stay in the device's memory. The host only says how far to go, waits, with a deadline, and
-//! looks at the cursors.
+//! Learners stay in the device's memory. The host only says how far to go, one dispatch ahead, waits, with a deadline,
+//! and looks at the cursors now and then.
 
 pub mod adapter;
 pub mod canary;
@@ -9,11 +9,13 @@ pub mod conformance;
 pub mod device;
 pub mod flight;
 pub mod governor;
+pub mod held;
 pub mod pipeline;
 pub mod probe;
 pub mod shards;
 pub mod source;
 pub mod spirv;
+pub mod stage;
 pub mod trials;
 
 use super::{Backend, BackendError, Cohort, Stop, Test, fresh};
@@ -23,10 +25,11 @@ use bytemuck::Zeroable;
 use conformance::{Verdict, examine};
 use device::Device;
 use flight::{Flight, IN_FLIGHT, Rounds, Traffic};
-use governor::{Governor, Share, ceiling, quantum_turns, step_turns};
-use pipeline::Pipeline;
+use governor::{Share, ceiling, quantum_turns, step_turns};
+use held::{holders, wanted};
 use shards::{Common, Shard};
 use source::{ADVANCE, EVALUATE, Kernel, STEP};
+use stage::Stage;
 use std::ops::Range;
 use std::time::{Duration, Instant};
 use trials::finish;
@@ -48,6 +51,9 @@ pub struct GpuOptions {
     pub shard: Option<usize>,
     /// Most dispatches in flight; else [`IN_FLIGHT`]. No result depends on it.
     pub in_flight: Option<usize>,
+    /// Most words of a workgroup's memory that hold weights in replay; else as many as there is room for. No result
+    /// depends on it.
+    pub held: Option<u32>,
 }
 
 /// Executes the kernels on an adapter.
@@ -60,15 +66,8 @@ pub struct GpuBackend {
     step: Stage,
     traffic: Traffic,
     shard: usize,
+    held: u32,
     loaded: Option<Loaded>,
-}
-
-/// A kernel, compiled at its first use, and the governor of its dispatches.
-#[derive(Debug)]
-struct Stage {
-    kernel: Kernel,
-    pipeline: Option<Pipeline>,
-    governor: Governor,
 }
 
 /// A cohort on the device and its copy on the host, which lags behind.
@@ -80,22 +79,6 @@ struct Loaded {
     bindings: Vec<wgpu::BindGroup>,
     dispatch: wgpu::Buffer,
     rounds: Rounds,
-}
-
-impl Stage {
-    fn new(kernel: Kernel, quanta: Option<u32>) -> Self {
-        Self { kernel, pipeline: None, governor: Governor::new(quanta, 1) }
-    }
-
-    fn ready(&mut self, device: &Device) -> Result<(&Pipeline, &mut Governor), BackendError> {
-        if self.pipeline.is_none() {
-            self.pipeline = Some(Pipeline::new(device, self.kernel)?);
-        }
-        match &self.pipeline {
-            Some(pipeline) => Ok((pipeline, &mut self.governor)),
-            None => Err(nothing_loaded()),
-        }
-    }
 }
 
 fn nothing_loaded() -> BackendError {
@@ -142,6 +125,7 @@ impl GpuBackend {
             step: stage(STEP),
             traffic: Traffic::new(options.in_flight.unwrap_or(IN_FLIGHT)),
             shard: options.shard.unwrap_or(usize::MAX).max(1),
+            held: options.held.unwrap_or(u32::MAX),
             loaded: None,
         })
     }
@@ -162,10 +146,7 @@ impl GpuBackend {
     pub fn replace(&mut self, kernel: Kernel) {
         self.loaded = None;
         for stage in [&mut self.advance, &mut self.evaluate, &mut self.step] {
-            if stage.kernel.name == kernel.name {
-                stage.kernel = kernel;
-                stage.pipeline = None;
-            }
+            stage.replace(kernel);
         }
     }
 
@@ -173,6 +154,12 @@ impl GpuBackend {
     #[doc(hidden)]
     pub fn traffic(&mut self) -> &mut Traffic {
         &mut self.traffic
+    }
+
+    /// Words of a workgroup's memory that hold weights of the cohort.
+    #[doc(hidden)]
+    pub fn held(&self) -> u32 {
+        self.advance.held()
     }
 
     fn uniform(&self, kernel: &'static str) -> Result<wgpu::Buffer, BackendError> {
@@ -203,10 +190,12 @@ impl Backend for GpuBackend {
     fn load(&mut self, cohort: Cohort) -> Result<(), BackendError> {
         // The old cohort's memory is free before the new one's is taken.
         self.loaded = None;
-        let turns = quantum_turns(&cohort.shared);
+        self.advance.hold(wanted(&cohort).into_iter().filter(|words| *words <= self.held).collect());
+        let (pipeline, _) = self.advance.ready(&self.device)?;
+        let turns = quantum_turns(&cohort.shared, holders(&cohort, pipeline.held()));
         let most = ceiling(self.verdict.loop_budget, turns);
-        self.advance.governor.set_ceiling(most);
-        self.evaluate.governor.set_ceiling(most);
+        self.advance.set_ceiling(most);
+        self.evaluate.set_ceiling(most);
         let common = Common::new(&self.device, ADVANCE.name, &cohort.shared)?;
         let shards = shards::upload(&self.device, &cohort, self.shard)?;
         let dispatch = self.uniform(ADVANCE.name)?;
@@ -335,7 +324,7 @@ impl Backend for GpuBackend {
         let uniform = self.uniform(STEP.name)?;
         let common = Common::new(&self.device, STEP.name, shared)?;
         let most = ceiling(self.verdict.loop_budget, step_turns(shared));
-        self.step.governor.set_ceiling(most);
+        self.step.set_ceiling(most);
         let (pipeline, governor) = self.step.ready(&self.device)?;
         for robots in robots.chunks_mut(governor::GROUPS as usize) {
             let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;

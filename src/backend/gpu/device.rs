@@ -37,7 +37,7 @@ pub fn takes_spirv(adapter: &wgpu::Adapter) -> bool {
 }
 
 impl Device {
-    /// Opens an adapter with default limits, but for buffers as large as it offers.
+    /// Opens an adapter with default limits, but for buffers and workgroup memory as large as it offers.
     ///
     /// # Errors
     /// Where the driver refuses.
@@ -54,6 +54,7 @@ impl Device {
         let required_limits = wgpu::Limits {
             max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size,
             max_buffer_size: offered.max_buffer_size,
+            max_compute_workgroup_storage_size: offered.max_compute_workgroup_storage_size,
             ..wgpu::Limits::default()
         };
         let required_features = if passthrough { wgpu::Features::PASSTHROUGH_SHADERS } else { wgpu::Features::empty() };

@@ -70,7 +70,10 @@ impl Governor {
         if elapsed > CAP {
             self.work = (fits / 2).max(1);
         } else if fits < self.work {
-            self.work = fits.max(1);
+            // A small remainder takes the time of any dispatch, however short.
+            if elapsed > AIM || 2 * done >= self.work {
+                self.work = fits.max(1);
+            }
         } else if busy {
             self.work = fits.min(done.saturating_mul(2)).max(self.work);
         }
@@ -92,11 +95,15 @@ pub fn step_turns(shared: &Shared) -> u32 {
 
 /// Loop turns of one invocation in the dearest quantum: a trial step that runs the nets of all watched skills, of the
 /// root and of the skills on the way down to an action, or a replayed transition, which runs the nets forwards and one
-/// of them backwards.
-pub fn quantum_turns(shared: &Shared) -> u32 {
+/// of them backwards. `holders` are the bits of the skills whose weights lie in workgroup memory then: it may be the
+/// first transition of a dispatch and the last one.
+pub fn quantum_turns(shared: &Shared, holders: u32) -> u32 {
     let act = (0..shared.skills.len()).map(|root| act_turns(shared, root)).max().unwrap_or(0);
-    let replay = shared.skills.iter().map(replay_turns).max().unwrap_or(0);
-    1 + act.max(replay)
+    let replay = shared.skills.iter().enumerate().map(|(skill, plan)| {
+        let held = (holders >> skill) & 1 == 1;
+        replay_turns(plan) + if held { 2 * turns(plan.nets, turns(plan.rows, 0)) } else { 0 }
+    });
+    1 + act.max(replay.max().unwrap_or(0))
 }
 
 /// Random numbers of one draw.
@@ -224,7 +231,7 @@ mod tests {
             governor.took(share, Duration::from_micros(200), true);
         }
         assert_eq!(governor.share(64).work(), 2 * share.work());
-        // One that was cut short, by a robot's last step or a shard's last learner, takes nothing back.
+        // A remainder, a shard's last learners say, takes nothing back.
         governor.took(Share { groups: 3, quanta: 1 }, Duration::from_micros(200), true);
         assert_eq!(governor.share(64).work(), 2 * share.work());
     }
