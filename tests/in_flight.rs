@@ -21,11 +21,11 @@ use std::time::Instant;
 /// Drivers are tested one user at a time.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
 
-/// Two learners of each arm of a tree.
+/// One learner of each arm of a tree.
 static TREE: LazyLock<Work> = LazyLock::new(|| {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/support/tree.toml");
     let plan = load(&path, &Overrides::default()).expect("the config is good");
-    Work::new(&plan, 8).expect("the experiment can be set up")
+    Work::new(&plan, 4).expect("the experiment can be set up")
 });
 
 const END: Stop = Stop { skill: u32::MAX, trial: u32::MAX };
@@ -35,7 +35,7 @@ fn alone() -> MutexGuard<'static, ()> {
 }
 
 fn open(quanta: u32, in_flight: Option<usize>) -> GpuBackend {
-    let options = GpuOptions { quanta: Some(quanta), shard: Some(5), in_flight, ..GpuOptions::default() };
+    let options = GpuOptions { quanta: Some(quanta), shard: Some(3), in_flight, ..GpuOptions::default() };
     GpuBackend::new(&options).expect("an adapter, if only a software one")
 }
 

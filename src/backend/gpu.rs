@@ -251,8 +251,7 @@ impl Backend for GpuBackend {
                 shard.read_cursors(&self.device, cohort)?;
             }
             let busy = 2 * count_waiting(&cohort.cursors, stop) >= waiting && 2 * waiting >= cohort.cursors.len();
-            flight.learn(busy);
-            rounds.looked(busy);
+            rounds.looked(busy, flight.learn(busy));
         }
         Ok(&cohort.cursors)
     }

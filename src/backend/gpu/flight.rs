@@ -86,11 +86,10 @@ impl<'a> Flight<'a> {
         Ok(())
     }
 
-    /// Tells the governor whether most workgroups of what has landed since it was told last had work to the end.
-    pub fn learn(&mut self, busy: bool) {
-        if let Some((share, elapsed)) = self.fullest.take() {
-            self.governor.took(share, elapsed, busy);
-        }
+    /// Tells the governor whether most workgroups of what has landed since it was told last had work to the end. True
+    /// where dispatches are far from their size.
+    pub fn learn(&mut self, busy: bool) -> bool {
+        self.fullest.take().is_some_and(|(share, elapsed)| self.governor.took(share, elapsed, busy))
     }
 
     /// Waits for the oldest. What fails stays the device's fault, so that whatever follows tells of it, and of nothing
@@ -109,7 +108,8 @@ impl<'a> Flight<'a> {
 }
 
 /// How many dispatches over all workgroups follow one another before the host looks at what they left. Twice as many
-/// each time that most had work to the end, so that no more of them can be idle than had work before.
+/// each time that most had work to the end, so that no more of them can be idle than had work before. One as long as
+/// dispatches grow, which takes a look.
 #[derive(Debug, Clone, Copy)]
 pub struct Rounds(u32);
 
@@ -128,9 +128,9 @@ impl Rounds {
         self.0
     }
 
-    /// Learns whether most workgroups had work to the end.
-    pub fn looked(&mut self, busy: bool) {
-        self.0 = if busy { (2 * self.0).min(ROUNDS) } else { 1 };
+    /// Learns whether most workgroups had work to the end, and whether dispatches grow.
+    pub fn looked(&mut self, busy: bool, grows: bool) {
+        self.0 = if busy && !grows { (2 * self.0).min(ROUNDS) } else { 1 };
     }
 }
 
@@ -180,6 +180,18 @@ impl Traffic {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_host_looks_seldom_while_all_have_work_and_soon_when_they_have_not() {
+        let mut rounds = Rounds::default();
+        let mut seen = Vec::new();
+        for (busy, grows) in [(true, true), (true, false), (true, false), (true, false), (true, false), (false, false)]
+        {
+            seen.push(rounds.count());
+            rounds.looked(busy, grows);
+        }
+        assert_eq!((seen, rounds.count()), (vec![1, 1, 2, 4, 8, 8], 1));
+    }
 
     #[test]
     fn a_dispatch_that_queued_took_the_time_since_the_one_before_it() {

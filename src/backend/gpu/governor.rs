@@ -62,9 +62,9 @@ impl Governor {
 
     /// Learns from a dispatch. `busy` says whether most of its workgroups had work to the end: one that was
     /// over early says nothing about how long a full one would take. Work grows to twice what was done and not what
-    /// is allowed by now, as others of the same size may have ended since.
-    pub fn took(&mut self, share: Share, elapsed: Duration, busy: bool) {
-        let done = share.work();
+    /// is allowed by now, as others of the same size may have ended since. True where it grew by more than times vary.
+    pub fn took(&mut self, share: Share, elapsed: Duration, busy: bool) -> bool {
+        let (before, done) = (self.work, share.work());
         let seconds = elapsed.as_secs_f64().max(1.0e-4);
         let fits = (done as f64 * AIM.as_secs_f64() / seconds) as u64;
         if elapsed > CAP {
@@ -77,6 +77,7 @@ impl Governor {
         } else if busy {
             self.work = fits.min(done.saturating_mul(2)).max(self.work);
         }
+        2 * self.work > 3 * before
     }
 }
 

@@ -45,8 +45,13 @@ pub fn holders(cohort: &Cohort, held: u32) -> u32 {
 pub fn held(device: &Device, module: &Module, wanted: &[u32]) -> Result<u32, String> {
     // Where the driver takes no SPIR-V, one invocation zeroes the memory, and nobody has seen how long that takes.
     let limit = if device.passthrough { device.device.limits().max_compute_workgroup_storage_size } else { 0 };
-    let room = limit.saturating_sub(shared_bytes(module)?) / size_of::<f32>() as u32;
-    Ok(wanted.iter().copied().filter(|words| *words <= room).max().unwrap_or(1))
+    Ok(fitting(limit, shared_bytes(module)?, wanted))
+}
+
+/// The most words of those wanted that `limit` bytes hold beside `taken`, at least one.
+fn fitting(limit: u32, taken: u32, wanted: &[u32]) -> u32 {
+    let room = limit.saturating_sub(taken) / size_of::<f32>() as u32;
+    wanted.iter().copied().filter(|words| *words <= room).max().unwrap_or(1)
 }
 
 /// Bytes of a module's workgroup memory, with overrides as in the text.
@@ -58,4 +63,24 @@ pub fn shared_bytes(module: &Module) -> Result<u32, String> {
     layouter.update(module.to_ctx()).map_err(|error| error.to_string())?;
     let shared = module.global_variables.iter().filter(|(_, variable)| variable.space == AddressSpace::WorkGroup);
     Ok(shared.map(|(_, variable)| layouter[variable.ty].size.next_multiple_of(ALIGNMENT)).sum())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::source::ADVANCE;
+    use super::super::spirv::check;
+    use super::*;
+
+    #[test]
+    fn every_device_has_room_for_a_word_and_larger_ones_for_more() {
+        let taken = shared_bytes(&check(&ADVANCE.wgsl()).expect("valid").module).expect("sizes");
+        // Nets of docking: one for all actions; six of 16 units; six of 32.
+        let wanted = [1_920, 5_280, 10_560];
+        for (limit, held) in [(0, 1), (16 << 10, 1_920), (32 << 10, 5_280), (48 << 10, 10_560)] {
+            assert_eq!(fitting(limit, taken, &wanted), held);
+            assert!(limit == 0 || taken + 4 * held <= limit, "{taken} bytes beside {held} words of {limit} bytes");
+        }
+        assert_eq!(fitting(48 << 10, taken, &[]), 1);
+        assert!(taken > 4_000, "{taken}");
+    }
 }

@@ -38,8 +38,7 @@ pub fn finish(
         device.download(EVALUATE.name, results, bytemuck::cast_slice_mut(episodes))?;
         let running = episodes.iter().filter(|episode| episode.state < STATE_ACHIEVED).count();
         let busy = 2 * running >= episodes.len();
-        flight.learn(busy);
-        rounds.looked(busy);
+        rounds.looked(busy, flight.learn(busy));
         if running == 0 {
             return Ok(());
         }
