@@ -15,9 +15,77 @@
 @group(0) @binding(8) var<storage, read_write> lessons: array<u32>;
 @group(0) @binding(9) var<storage, read_write> rows: array<u32>;
 
+// Words of `held`. The host sets it from what the device has and what the cohort's skills take.
+override HELD: u32 = 1u;
+
+// The weights of the skill in training from the first replayed transition on, until the learner leaves replay: rows are
+// packed by the lanes in use. The array is not zeroed; no word is read before `hold` has written it.
+var<workgroup> held: array<f32, HELD>;
+var<private> holding: bool;
+
 var<private> cursor: Cursor;
 var<private> rows_base: u32;
 var<private> lessons_base: u32;
+
+fn weights_of(skill: u32, units: u32, base: u32, net: u32) -> u32 {
+    return select(net_of(skill, base, net), net * skills[skill].rows * units, holding);
+}
+
+fn stride_of(units: u32) -> u32 {
+    return select(LANES, units, holding);
+}
+
+fn weight(at: u32) -> f32 {
+    if holding {
+        return held[at];
+    }
+    return nets[at];
+}
+
+fn put_weight(at: u32, value: f32) {
+    if holding {
+        held[at] = value;
+    } else {
+        nets[at] = value;
+    }
+}
+
+fn hold(lane: u32, s: u32, base: u32) {
+    let skill = cursor.skill;
+    let units = lanes_of(settings[s].hidden);
+    let rows = skills[skill].rows;
+    if !holding && skills[skill].nets * rows * units <= HELD {
+        for (var number = 0u; number < skills[skill].nets; number++) {
+            let net = net_of(skill, base, number);
+            for (var row = 0u; row < rows; row++) {
+                if lane < units {
+                    held[(number * rows + row) * units + lane] = nets[net + row * LANES + lane];
+                }
+            }
+        }
+        holding = true;
+        workgroupBarrier();
+    }
+}
+
+fn let_go(lane: u32, base: u32) {
+    if holding {
+        let skill = cursor.skill;
+        let units = lanes_of(settings[settings_base + skill].hidden);
+        let rows = skills[skill].rows;
+        for (var number = 0u; number < skills[skill].nets; number++) {
+            let net = net_of(skill, base, number);
+            for (var row = 0u; row < rows; row++) {
+                if lane < units {
+                    nets[net + row * LANES + lane] = held[(number * rows + row) * units + lane];
+                }
+            }
+        }
+        holding = false;
+        storageBarrier();
+        workgroupBarrier();
+    }
+}
 
 fn stopped() -> bool {
     let beyond = cursor.skill > dispatch.stop_skill && cursor.phase <= PHASE_START;
@@ -28,6 +96,7 @@ fn stopped() -> bool {
 }
 
 fn conclude(lane: u32, base: u32) {
+    let_go(lane, base);
     // What the last update spoiled is replayed too late: tests come first, and the next skill builds on it.
     cursor.phase = select(PHASE_FAILED, PHASE_START, sound_weights(lane, base));
 }
@@ -52,6 +121,7 @@ fn teach(lane: u32, s: u32, base: u32) {
                 write_row(lane, number, steps, reward, end, collisions, 1u);
             }
         }
+        hold(lane, s, base);
         replay_step(lane, s, base);
     }
 }
@@ -136,6 +206,7 @@ fn replay(lane: u32, s: u32, base: u32) {
                 begin_replay(s, lesson, 0u, mirrored);
             }
         }
+        hold(lane, s, base);
         replay_step(lane, s, base);
     }
 }
@@ -164,6 +235,7 @@ fn advance(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_in
             replay(lane, s, base);
         }
     }
+    let_go(lane, base);
     cursor.agent = agent;
     if lane == 0u {
         cursors[learner] = cursor;

@@ -17,6 +17,18 @@ const STATE_CUT: u32 = 3u;
 
 var<private> episode: Episode;
 
+fn weights_of(skill: u32, units: u32, base: u32, net: u32) -> u32 {
+    return net_of(skill, base, net);
+}
+
+fn stride_of(units: u32) -> u32 {
+    return LANES;
+}
+
+fn weight(at: u32) -> f32 {
+    return nets[at];
+}
+
 fn begin(s: u32, number: u32) {
     let skill = dispatch.test_skill;
     let key = vec2<u32>(settings[s].run_seed, settings[s].learner_seed);

@@ -14,6 +14,11 @@
 //! short as a watchdog wants it. Kernel [`mod@evaluate`] runs greedy tests with the nets read-only, and
 //! kernel [`mod@step`] lets a robot carry out given actions.
 //!
+//! The host keeps two dispatches in flight ([`backend::gpu::flight`]) and looks at the cursors once in several. While a
+//! learner replays, kernel [`advance`] holds the weights of the skill in training in its workgroup's memory where they
+//! fit ([`backend::gpu::held`]); the CPU's twin works on a copy that stays in the cache. What either is worth on a graphics
+//! card has not been measured.
+//!
 //! # A skill tree is data
 //!
 //! A skill is a Q-function over children, and a child is an action or a skill with a lower number: nothing else

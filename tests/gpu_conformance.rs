@@ -87,4 +87,6 @@ fn a_lost_device_is_an_error() {
     device.device.destroy();
     let error = ask(&device, &questions(32)).expect_err("the device is lost");
     assert!(matches!(error, BackendError::Device { kernel: "probe", .. }), "{error}");
+    // Whoever comes next hears of it too: other dispatches may have been in flight.
+    assert!(device.sound("step").is_err() && device.wait("step", None).is_err());
 }

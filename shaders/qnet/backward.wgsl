@@ -16,12 +16,16 @@ struct Errors {
     hidden: f32,
 }
 
-fn errors(lane: u32, skill: u32, net: u32, number: u32, child: u32, delta: f32) -> Errors {
+fn errors(lane: u32, units: u32, skill: u32, base: u32, number: u32, child: u32, delta: f32) -> Errors {
     let value = q[child];
     let output = delta * (1.0f - value * value);
     let activation = hidden[number][lane];
-    let weight = nets[net + (skills[skill].inputs + 1u + child - number) * LANES + lane];
-    return Errors(output, output * weight * (1.0f - activation * activation));
+    let row = skills[skill].inputs + 1u + child - number;
+    var own = 0.0f;
+    if lane < units {
+        own = weight(weights_of(skill, units, base, number) + row * stride_of(units) + lane);
+    }
+    return Errors(output, output * own * (1.0f - activation * activation));
 }
 
 fn gradient(lane: u32, skill: u32, number: u32, output: u32, row: u32, errors: Errors) -> f32 {
@@ -97,6 +101,8 @@ fn learn(
     pace: f32,
 ) {
     let net = net_of(skill, base, number);
+    let weights = weights_of(skill, units, base, number) + lane;
+    let stride = stride_of(units);
     let slab = skills[skill].rows * LANES;
     // A lane without a hidden unit has no rows.
     let rows = select(0u, skills[skill].rows, lane < units);
@@ -106,10 +112,11 @@ fn learn(
     if settings[s].optimiser == OPTIMISER_SGD {
         for (var row = 0u; row < rows; row++) {
             let at = net + row * LANES + lane;
+            let own = weights + row * stride;
             let g = gradient(lane, skill, number, output, row, found);
             let velocity = flush(beta1 * nets[at + slab] + pace * g);
             nets[at + slab] = velocity;
-            nets[at] = nets[at] + velocity;
+            put_weight(own, weight(own) + velocity);
         }
     } else {
         // Adam (Kingma and Ba, 2015) in its second form, with epsilon under the root: one reciprocal root serves where a
@@ -131,23 +138,25 @@ fn learn(
             let chosen = select(0.0f, 1.0f, lane == output);
             for (var row = 0u; row < rows; row++) {
                 let at = net + row * LANES + lane;
+                let own = weights + row * stride;
                 let above = select(chosen, hidden[number][lane], row + 1u < skills[skill].rows);
                 let alike = select(above, found.hidden, row <= count);
                 let factor = rest1 * row_factor[row];
                 let mean = flush(beta1 * nets[at + slab] + factor * alike);
                 nets[at + slab] = mean;
-                nets[at] = nets[at] + row_pace[row] * mean;
+                put_weight(own, weight(own) + row_pace[row] * mean);
             }
         } else {
             let rest2 = 1.0f - beta2;
             for (var row = 0u; row < rows; row++) {
                 let at = net + row * LANES + lane;
+                let own = weights + row * stride;
                 let g = gradient(lane, skill, number, output, row, found);
                 let mean = flush(beta1 * nets[at + slab] + rest1 * g);
                 let square = flush(beta2 * nets[at + 2u * slab] + rest2 * (g * g));
                 nets[at + slab] = mean;
                 nets[at + 2u * slab] = square;
-                nets[at] = nets[at] + rate * mean * reciprocal_sqrt(square + epsilon2);
+                put_weight(own, weight(own) + rate * mean * reciprocal_sqrt(square + epsilon2));
             }
         }
     }
@@ -155,9 +164,9 @@ fn learn(
 
 fn backward(lane: u32, skill: u32, s: u32, base: u32, child: u32, delta: f32, pace: f32) {
     let number = select(child, 0u, skills[skill].nets == 1u);
-    let net = net_of(skill, base, number);
-    let found = errors(lane, skill, net, number, child, delta);
-    learn(lane, lanes_of(settings[s].hidden), skill, s, base, number, child - number, found, pace);
+    let units = lanes_of(settings[s].hidden);
+    let found = errors(lane, units, skill, base, number, child, delta);
+    learn(lane, units, skill, s, base, number, child - number, found, pace);
     // The output bias and the clocks are read by other lanes than the one that wrote them.
     storageBarrier();
     workgroupBarrier();

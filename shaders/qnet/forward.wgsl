@@ -16,24 +16,25 @@ fn net_of(skill: u32, base: u32, net: u32) -> u32 {
 fn layer(lane: u32, units: u32, skill: u32, base: u32) {
     let count = skills[skill].inputs;
     let outputs = skills[skill].outputs;
+    let stride = stride_of(units);
     for (var number = 0u; number < skills[skill].nets; number++) {
-        let net = net_of(skill, base, number);
+        let net = weights_of(skill, units, base, number);
         var activation = 0.0f;
         if lane < units {
-            var sum = nets[net + count * LANES + lane];
+            var sum = weight(net + count * stride + lane);
             for (var row = 0u; row < count; row++) {
                 let x = inputs[row];
                 let bits = select(skills[skill].bits_low, skills[skill].bits_high, row >= 32u);
                 if x != 0.0f || ((bits >> (row % 32u)) & 1u) == 0u {
-                    sum = sum + nets[net + row * LANES + lane] * x;
+                    sum = sum + weight(net + row * stride + lane) * x;
                 }
             }
             activation = squash(sum);
+            for (var output = 0u; output < outputs; output++) {
+                partials[number + output][lane] = activation * weight(net + (count + 1u + output) * stride + lane);
+            }
         }
         hidden[number][lane] = activation;
-        for (var output = 0u; output < outputs; output++) {
-            partials[number + output][lane] = activation * nets[net + (count + 1u + output) * LANES + lane];
-        }
     }
 }
 
@@ -45,7 +46,7 @@ fn forward(lane: u32, skill: u32, s: u32, base: u32) {
     if lane < children {
         let net = select(lane, 0u, skills[skill].nets == 1u);
         let row = skills[skill].inputs + 1u + skills[skill].outputs;
-        let bias = nets[net_of(skill, base, net) + row * LANES + (lane - net)];
+        let bias = weight(weights_of(skill, lanes, base, net) + row * stride_of(lanes) + (lane - net));
         q[lane] = squash(partials[lane][0] + bias);
     }
     workgroupBarrier();

@@ -1,32 +1,38 @@
 //! The GPU backend: the kernels on any adapter of Vulkan, Metal or DX12.
 //!
-//! Learners stay in the device's memory. The host only says how far to go, waits, with a deadline, and
-//! looks at the cursors.
+//! Learners stay in the device's memory. The host only says how far to go, one dispatch ahead, waits, with a deadline,
+//! and looks at the cursors now and then.
 
 pub mod adapter;
 pub mod canary;
 pub mod conformance;
 pub mod device;
+pub mod flight;
 pub mod governor;
+pub mod held;
 pub mod pipeline;
 pub mod probe;
 pub mod shards;
 pub mod source;
 pub mod spirv;
+pub mod stage;
+pub mod trials;
 
 use super::{Backend, BackendError, Cohort, Stop, Test, fresh};
-use crate::evaluate::STATE_ACHIEVED;
 use crate::learner::layout::{Cursor, Dispatch, Episode, Robot};
 use crate::learner::memory::Shared;
 use bytemuck::Zeroable;
 use conformance::{Verdict, examine};
 use device::Device;
-use governor::{Governor, Share, ceiling, quantum_turns, step_turns};
-use pipeline::Pipeline;
+use flight::{Flight, IN_FLIGHT, Rounds, Traffic};
+use governor::{Share, ceiling, quantum_turns, step_turns};
+use held::{holders, wanted};
 use shards::{Common, Shard};
 use source::{ADVANCE, EVALUATE, Kernel, STEP};
+use stage::Stage;
 use std::ops::Range;
 use std::time::{Duration, Instant};
+use trials::finish;
 use wgpu::BufferUsages;
 
 /// Work of one call of [`Backend::advance`].
@@ -43,6 +49,11 @@ pub struct GpuOptions {
     pub quanta: Option<u32>,
     /// Most learners in one set of buffers; else as many as fit. No result depends on it.
     pub shard: Option<usize>,
+    /// Most dispatches in flight; else [`IN_FLIGHT`]. No result depends on it.
+    pub in_flight: Option<usize>,
+    /// Most words of a workgroup's memory that hold weights in replay; else as many as there is room for. No result
+    /// depends on it.
+    pub held: Option<u32>,
 }
 
 /// Executes the kernels on an adapter.
@@ -53,16 +64,10 @@ pub struct GpuBackend {
     advance: Stage,
     evaluate: Stage,
     step: Stage,
+    traffic: Traffic,
     shard: usize,
+    held: u32,
     loaded: Option<Loaded>,
-}
-
-/// A kernel, compiled at its first use, and the governor of its dispatches.
-#[derive(Debug)]
-struct Stage {
-    kernel: Kernel,
-    pipeline: Option<Pipeline>,
-    governor: Governor,
 }
 
 /// A cohort on the device and its copy on the host, which lags behind.
@@ -73,37 +78,7 @@ struct Loaded {
     shards: Vec<Shard>,
     bindings: Vec<wgpu::BindGroup>,
     dispatch: wgpu::Buffer,
-}
-
-impl Stage {
-    fn new(kernel: Kernel, quanta: Option<u32>) -> Self {
-        Self { kernel, pipeline: None, governor: Governor::new(quanta, 1) }
-    }
-
-    fn ready(&mut self, device: &Device) -> Result<(&Pipeline, &mut Governor), BackendError> {
-        if self.pipeline.is_none() {
-            self.pipeline = Some(Pipeline::new(device, self.kernel)?);
-        }
-        match &self.pipeline {
-            Some(pipeline) => Ok((pipeline, &mut self.governor)),
-            None => Err(nothing_loaded()),
-        }
-    }
-}
-
-/// Runs a dispatch and says how long it took.
-fn timed(
-    device: &Device,
-    pipeline: &Pipeline,
-    group: &wgpu::BindGroup,
-    uniform: &wgpu::Buffer,
-    dispatch: &Dispatch,
-    (x, y): (u32, u32),
-) -> Result<Duration, BackendError> {
-    device.queue.write_buffer(uniform, 0, bytemuck::bytes_of(dispatch));
-    let begun = Instant::now();
-    pipeline.dispatch(device, group, x, y)?;
-    Ok(begun.elapsed())
+    rounds: Rounds,
 }
 
 fn nothing_loaded() -> BackendError {
@@ -148,7 +123,9 @@ impl GpuBackend {
             advance: stage(ADVANCE),
             evaluate: stage(EVALUATE),
             step: stage(STEP),
+            traffic: Traffic::new(options.in_flight.unwrap_or(IN_FLIGHT)),
             shard: options.shard.unwrap_or(usize::MAX).max(1),
+            held: options.held.unwrap_or(u32::MAX),
             loaded: None,
         })
     }
@@ -169,11 +146,20 @@ impl GpuBackend {
     pub fn replace(&mut self, kernel: Kernel) {
         self.loaded = None;
         for stage in [&mut self.advance, &mut self.evaluate, &mut self.step] {
-            if stage.kernel.name == kernel.name {
-                stage.kernel = kernel;
-                stage.pipeline = None;
-            }
+            stage.replace(kernel);
         }
+    }
+
+    /// What was in flight so far, for tests of the overlap.
+    #[doc(hidden)]
+    pub fn traffic(&mut self) -> &mut Traffic {
+        &mut self.traffic
+    }
+
+    /// Words of a workgroup's memory that hold weights of the cohort.
+    #[doc(hidden)]
+    pub fn held(&self) -> u32 {
+        self.advance.held()
     }
 
     fn uniform(&self, kernel: &'static str) -> Result<wgpu::Buffer, BackendError> {
@@ -204,10 +190,12 @@ impl Backend for GpuBackend {
     fn load(&mut self, cohort: Cohort) -> Result<(), BackendError> {
         // The old cohort's memory is free before the new one's is taken.
         self.loaded = None;
-        let turns = quantum_turns(&cohort.shared);
+        self.advance.hold(wanted(&cohort).into_iter().filter(|words| *words <= self.held).collect());
+        let (pipeline, _) = self.advance.ready(&self.device)?;
+        let turns = quantum_turns(&cohort.shared, holders(&cohort, pipeline.held()));
         let most = ceiling(self.verdict.loop_budget, turns);
-        self.advance.governor.set_ceiling(most);
-        self.evaluate.governor.set_ceiling(most);
+        self.advance.set_ceiling(most);
+        self.evaluate.set_ceiling(most);
         let common = Common::new(&self.device, ADVANCE.name, &cohort.shared)?;
         let shards = shards::upload(&self.device, &cohort, self.shard)?;
         let dispatch = self.uniform(ADVANCE.name)?;
@@ -222,44 +210,48 @@ impl Backend for GpuBackend {
             })
             .collect();
         self.device.sound(ADVANCE.name)?;
-        self.loaded = Some(Loaded { cohort, common, shards, bindings, dispatch });
+        self.loaded = Some(Loaded { cohort, common, shards, bindings, dispatch, rounds: Rounds::default() });
         Ok(())
     }
 
     fn advance(&mut self, stop: Stop) -> Result<&[Cursor], BackendError> {
         let loaded = self.loaded.as_mut().ok_or_else(nothing_loaded)?;
-        let (pipeline, governor) = self.advance.ready(&self.device)?;
-        let Loaded { cohort, shards, bindings, dispatch: uniform, .. } = loaded;
+        let Loaded { cohort, shards, bindings, dispatch: uniform, rounds, .. } = loaded;
         let begun = Instant::now();
         loop {
             let waiting = count_waiting(&cohort.cursors, stop);
             if waiting == 0 || begun.elapsed() >= TURN {
                 break;
             }
-            let mut last = None;
-            for (shard, binding) in shards.iter().zip(&*bindings) {
-                let learners = shard.learners.len() as u32;
-                let mut first = 0;
-                while first < learners {
-                    let share = governor.share(learners - first);
-                    let dispatch = Dispatch {
-                        quanta: share.quanta,
-                        stop_skill: stop.skill,
-                        stop_trial: stop.trial,
-                        first,
-                        ..of(cohort, learners)
-                    };
-                    let elapsed = timed(&self.device, pipeline, binding, uniform, &dispatch, (share.groups, 1))?;
-                    governor.took(share, elapsed, false);
-                    last = Some((share, elapsed));
-                    first += share.groups;
+            let stage = self.advance.ready(&self.device)?;
+            let mut flight = Flight::new(&self.device, stage, uniform, &mut self.traffic);
+            for _round in 0..rounds.count() {
+                for (shard, binding) in shards.iter().zip(&*bindings) {
+                    let learners = shard.learners.len() as u32;
+                    let mut first = 0;
+                    while first < learners {
+                        let share = flight.share(learners - first);
+                        let dispatch = Dispatch {
+                            quanta: share.quanta,
+                            stop_skill: stop.skill,
+                            stop_trial: stop.trial,
+                            first,
+                            ..of(cohort, learners)
+                        };
+                        flight.send(binding, &dispatch, share, (share.groups, 1))?;
+                        first += share.groups;
+                    }
                 }
+                if begun.elapsed() >= TURN {
+                    break;
+                }
+            }
+            flight.land()?;
+            for shard in &*shards {
                 shard.read_cursors(&self.device, cohort)?;
             }
             let busy = 2 * count_waiting(&cohort.cursors, stop) >= waiting && 2 * waiting >= cohort.cursors.len();
-            if let Some((share, elapsed)) = last {
-                governor.took(share, elapsed, busy);
-            }
+            rounds.looked(busy, flight.learn(busy));
         }
         Ok(&cohort.cursors)
     }
@@ -311,7 +303,8 @@ impl Backend for GpuBackend {
                     test_number: test.number,
                     ..of(cohort, shard.learners.len() as u32)
                 };
-                finish(&self.device, pipeline, governor, (&binding, uniform, &results), dispatch, part)?;
+                let flight = Flight::new(&self.device, (pipeline, governor), uniform, &mut self.traffic);
+                finish(&self.device, flight, (&binding, &results), dispatch, part)?;
                 first += count;
             }
         }
@@ -330,27 +323,30 @@ impl Backend for GpuBackend {
         let uniform = self.uniform(STEP.name)?;
         let common = Common::new(&self.device, STEP.name, shared)?;
         let most = ceiling(self.verdict.loop_budget, step_turns(shared));
-        self.step.governor.set_ceiling(most);
+        self.step.set_ceiling(most);
         let (pipeline, governor) = self.step.ready(&self.device)?;
         for robots in robots.chunks_mut(governor::GROUPS as usize) {
             let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
             let buffer = self.device.buffer(STEP.name, size_of_val(robots) as u64, usage)?;
             self.device.upload(STEP.name, &buffer, bytemuck::cast_slice(robots))?;
             let binding = pipeline.bind(&self.device, &[&uniform, &common.world, &common.atlas, &buffer]);
+            let mut flight = Flight::new(&self.device, (pipeline, governor), &uniform, &mut self.traffic);
             let mut first = 0;
             while first < robots.len() as u32 {
-                let waiting = robots.len() as u32 - first;
-                let groups = governor.share(waiting).groups;
+                let groups = flight.share(robots.len() as u32 - first).groups;
                 let mut left = quanta;
                 while left > 0 {
-                    let share = Share { groups, quanta: governor.share(groups).quanta.min(left) };
+                    let share = Share { groups, quanta: flight.share(groups).quanta.min(left) };
                     let dispatch = Dispatch { quanta: share.quanta, first, ..Dispatch::zeroed() };
-                    let elapsed = timed(&self.device, pipeline, &binding, &uniform, &dispatch, (groups, 1))?;
-                    governor.took(share, elapsed, true);
+                    flight.send(&binding, &dispatch, share, (groups, 1))?;
+                    // Robots have work to the end.
+                    flight.learn(true);
                     left -= share.quanta;
                 }
                 first += groups;
             }
+            flight.land()?;
+            flight.learn(true);
             self.device.download(STEP.name, &buffer, bytemuck::cast_slice_mut(robots))?;
         }
         Ok(())
@@ -371,34 +367,4 @@ fn of(cohort: &Cohort, learners: u32) -> Dispatch {
 
 fn count_waiting(cursors: &[Cursor], stop: Stop) -> usize {
     cursors.iter().filter(|cursor| !stop.holds(cursor)).count()
-}
-
-/// Dispatches test trials until all have ended.
-fn finish(
-    device: &Device,
-    pipeline: &Pipeline,
-    governor: &mut Governor,
-    (binding, uniform, results): (&wgpu::BindGroup, &wgpu::Buffer, &wgpu::Buffer),
-    mut dispatch: Dispatch,
-    episodes: &mut [Episode],
-) -> Result<(), BackendError> {
-    // No trial is longer than this: step limits are at most 255.
-    const LONGEST: u32 = 1 << 16;
-    device.upload(EVALUATE.name, results, bytemuck::cast_slice(episodes))?;
-    let groups = episodes.len() as u32;
-    let mut quanta = 0;
-    while quanta < LONGEST {
-        let share = Share { groups, quanta: governor.share(groups).quanta };
-        dispatch.quanta = share.quanta;
-        let size = (groups / dispatch.episodes, dispatch.episodes);
-        let elapsed = timed(device, pipeline, binding, uniform, &dispatch, size)?;
-        device.download(EVALUATE.name, results, bytemuck::cast_slice_mut(episodes))?;
-        let running = episodes.iter().filter(|episode| episode.state < STATE_ACHIEVED).count();
-        governor.took(share, elapsed, 2 * running >= episodes.len());
-        if running == 0 {
-            return Ok(());
-        }
-        quanta += share.quanta;
-    }
-    Err(BackendError::Device { kernel: EVALUATE.name, message: "a test trial does not end".to_owned() })
 }

@@ -37,7 +37,7 @@ pub(super) struct BackendArguments {
 impl BackendArguments {
     /// Opens the backend and says what it is.
     pub(super) fn open(&self) -> Result<Box<dyn Backend>, BackendError> {
-        let options = GpuOptions { adapter: self.adapter.clone(), quanta: self.quanta, shard: None };
+        let options = GpuOptions { adapter: self.adapter.clone(), quanta: self.quanta, ..GpuOptions::default() };
         match self.backend {
             Choice::Gpu => Ok(Box::new(GpuBackend::new(&options)?)),
             // An adapter that is asked for by name is wanted, even where `auto` would not choose it.

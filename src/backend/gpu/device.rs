@@ -37,7 +37,7 @@ pub fn takes_spirv(adapter: &wgpu::Adapter) -> bool {
 }
 
 impl Device {
-    /// Opens an adapter with default limits, but for buffers as large as it offers.
+    /// Opens an adapter with default limits, but for buffers and workgroup memory as large as it offers.
     ///
     /// # Errors
     /// Where the driver refuses.
@@ -54,6 +54,7 @@ impl Device {
         let required_limits = wgpu::Limits {
             max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size,
             max_buffer_size: offered.max_buffer_size,
+            max_compute_workgroup_storage_size: offered.max_compute_workgroup_storage_size,
             ..wgpu::Limits::default()
         };
         let required_features = if passthrough { wgpu::Features::PASSTHROUGH_SHADERS } else { wgpu::Features::empty() };
@@ -103,16 +104,12 @@ impl Device {
         self.sound(kernel).map(|()| buffer)
     }
 
-    /// Submits commands and waits until they are done.
+    /// Waits until a submission is done, or all are. What fails here stays a fault of the device: of other
+    /// submissions that are on their way nothing is known then.
     ///
     /// # Errors
     /// Where the device fails or does not answer in time.
-    pub fn run(&self, kernel: &'static str, encoder: wgpu::CommandEncoder) -> Result<(), BackendError> {
-        let submission = self.queue.submit([encoder.finish()]);
-        self.wait(kernel, Some(submission))
-    }
-
-    fn wait(&self, kernel: &'static str, submission: Option<wgpu::SubmissionIndex>) -> Result<(), BackendError> {
+    pub fn wait(&self, kernel: &'static str, submission: Option<wgpu::SubmissionIndex>) -> Result<(), BackendError> {
         let wait = wgpu::PollType::Wait { submission_index: submission, timeout: Some(DEADLINE) };
         // wgpu panics where the device is lost while it waits; a lost device is an error here.
         let polled = catch_unwind(AssertUnwindSafe(|| self.device.poll(wait)));
@@ -123,7 +120,8 @@ impl Device {
             Ok(Err(error)) => error.to_string(),
             Err(_) => "the device was lost".to_owned(),
         };
-        Err(BackendError::Device { kernel, message })
+        note(&self.fault, message);
+        self.sound(kernel)
     }
 
     /// Copies bytes to the start of a buffer.

@@ -33,6 +33,13 @@ pub struct Share {
     pub quanta: u32,
 }
 
+impl Share {
+    /// Quanta of all workgroups.
+    pub fn work(self) -> u64 {
+        u64::from(self.groups) * u64::from(self.quanta)
+    }
+}
+
 impl Governor {
     /// A governor that uses `fixed` quanta if given, and never more than `ceiling`.
     pub fn new(fixed: Option<u32>, ceiling: u32) -> Self {
@@ -54,18 +61,23 @@ impl Governor {
     }
 
     /// Learns from a dispatch. `busy` says whether most of its workgroups had work to the end: one that was
-    /// over early says nothing about how long a full one would take.
-    pub fn took(&mut self, share: Share, elapsed: Duration, busy: bool) {
-        let done = u64::from(share.groups) * u64::from(share.quanta);
+    /// over early says nothing about how long a full one would take. Work grows to twice what was done and not what
+    /// is allowed by now, as others of the same size may have ended since. True where it grew by more than times vary.
+    pub fn took(&mut self, share: Share, elapsed: Duration, busy: bool) -> bool {
+        let (before, done) = (self.work, share.work());
         let seconds = elapsed.as_secs_f64().max(1.0e-4);
         let fits = (done as f64 * AIM.as_secs_f64() / seconds) as u64;
         if elapsed > CAP {
             self.work = (fits / 2).max(1);
         } else if fits < self.work {
-            self.work = fits.max(1);
+            // A small remainder takes the time of any dispatch, however short.
+            if elapsed > AIM || 2 * done >= self.work {
+                self.work = fits.max(1);
+            }
         } else if busy {
-            self.work = fits.min(self.work.saturating_mul(2));
+            self.work = fits.min(done.saturating_mul(2)).max(self.work);
         }
+        2 * self.work > 3 * before
     }
 }
 
@@ -84,11 +96,15 @@ pub fn step_turns(shared: &Shared) -> u32 {
 
 /// Loop turns of one invocation in the dearest quantum: a trial step that runs the nets of all watched skills, of the
 /// root and of the skills on the way down to an action, or a replayed transition, which runs the nets forwards and one
-/// of them backwards.
-pub fn quantum_turns(shared: &Shared) -> u32 {
+/// of them backwards. `holders` are the bits of the skills whose weights lie in workgroup memory then: it may be the
+/// first transition of a dispatch and the last one.
+pub fn quantum_turns(shared: &Shared, holders: u32) -> u32 {
     let act = (0..shared.skills.len()).map(|root| act_turns(shared, root)).max().unwrap_or(0);
-    let replay = shared.skills.iter().map(replay_turns).max().unwrap_or(0);
-    1 + act.max(replay)
+    let replay = shared.skills.iter().enumerate().map(|(skill, plan)| {
+        let held = (holders >> skill) & 1 == 1;
+        replay_turns(plan) + if held { 2 * turns(plan.nets, turns(plan.rows, 0)) } else { 0 }
+    });
+    1 + act.max(replay.max().unwrap_or(0))
 }
 
 /// Random numbers of one draw.
@@ -205,6 +221,20 @@ mod tests {
         assert_eq!(ceiling(None, 400), u32::MAX);
         assert_eq!(ceiling(Some(65_535), 400), 75);
         assert_eq!(ceiling(Some(65_535), 90_000), 1);
+    }
+
+    /// Several in flight have the size that was right for the first of them: each must not double it again.
+    #[test]
+    fn dispatches_of_one_size_let_the_next_grow_once() {
+        let mut governor = Governor::new(None, u32::MAX);
+        let share = governor.share(64);
+        for _ in 0..5 {
+            governor.took(share, Duration::from_micros(200), true);
+        }
+        assert_eq!(governor.share(64).work(), 2 * share.work());
+        // A remainder, a shard's last learners say, takes nothing back.
+        governor.took(Share { groups: 3, quanta: 1 }, Duration::from_micros(200), true);
+        assert_eq!(governor.share(64).work(), 2 * share.work());
     }
 
     #[test]

@@ -1,8 +1,9 @@
 //! A kernel ready to run: its layout is read from the checked module, never guessed by the driver.
 
 use super::device::Device;
+use super::held::{HELD, held};
 use super::source::Kernel;
-use super::spirv::{check, compile};
+use super::spirv::{Overrides, check, compile};
 use crate::backend::BackendError;
 
 /// A compute pipeline and the layout of its one bind group.
@@ -11,6 +12,7 @@ pub struct Pipeline {
     kernel: Kernel,
     pipeline: wgpu::ComputePipeline,
     layout: wgpu::BindGroupLayout,
+    held: u32,
 }
 
 impl Pipeline {
@@ -19,10 +21,19 @@ impl Pipeline {
     /// # Errors
     /// Where the driver refuses it.
     pub fn new(device: &Device, kernel: Kernel) -> Result<Self, BackendError> {
+        Self::holding(device, kernel, &[])
+    }
+
+    /// Compiles a kernel for a device, with workgroup memory for the largest of some numbers of weights that fits.
+    ///
+    /// # Errors
+    /// Where the driver refuses it.
+    pub fn holding(device: &Device, kernel: Kernel, wanted: &[u32]) -> Result<Self, BackendError> {
         let failed = |message: String| BackendError::Device { kernel: kernel.name, message };
         let wgsl = kernel.wgsl();
         let checked = check(&wgsl).map_err(failed)?;
         let entries = entries(&checked.module).map_err(failed)?;
+        let held = held(device, &checked.module, wanted).map_err(failed)?;
         let scope = device.device.push_error_scope(wgpu::ErrorFilter::Validation);
         let layout = device
             .device
@@ -33,7 +44,9 @@ impl Pipeline {
             immediate_size: 0,
         });
         let module = if device.passthrough {
-            let words = compile(&checked, &kernel).map_err(failed)?;
+            let overridden = checked.module.overrides.iter().any(|(_, value)| value.name.as_deref() == Some(HELD));
+            let overrides: Overrides = overridden.then(|| (HELD.to_owned(), f64::from(held))).into_iter().collect();
+            let words = compile(&checked, &kernel, &overrides).map_err(failed)?;
             let entry_points = vec![wgpu::PassthroughShaderEntryPoint {
                 name: kernel.name.into(),
                 workgroup_size: (crate::learner::layout::LANES as u32, 1, 1),
@@ -45,7 +58,8 @@ impl Pipeline {
                 ..Default::default()
             };
             // SAFETY: naga validated the module and wrote these words with bounded indices and zeroed
-            // workgroup memory; all loops count up to a bound; the layout was made from the same module.
+            // workgroup memory, but for the array `held` of `advance`, whose words are written before they are
+            // read; all loops count up to a bound; the layout was made from the same module.
             unsafe { device.device.create_shader_module_passthrough(descriptor) }
         } else {
             device.device.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -65,7 +79,12 @@ impl Pipeline {
             return Err(failed(error.to_string()));
         }
         device.sound(kernel.name)?;
-        Ok(Self { kernel, pipeline, layout })
+        Ok(Self { kernel, pipeline, layout, held })
+    }
+
+    /// Words of workgroup memory that hold weights.
+    pub fn held(&self) -> u32 {
+        self.held
     }
 
     /// Binds buffers in the order of the kernel's bindings.
@@ -81,11 +100,13 @@ impl Pipeline {
         })
     }
 
-    /// Dispatches workgroups and waits until they are done.
-    ///
-    /// # Errors
-    /// Where the device fails.
-    pub fn dispatch(&self, device: &Device, bind_group: &wgpu::BindGroup, x: u32, y: u32) -> Result<(), BackendError> {
+    /// The kernel's name.
+    pub fn name(&self) -> &'static str {
+        self.kernel.name
+    }
+
+    /// Dispatches workgroups along both axes. It is done when the submission is.
+    pub fn submit(&self, device: &Device, bind_group: &wgpu::BindGroup, (x, y): (u32, u32)) -> wgpu::SubmissionIndex {
         let mut encoder = device.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
@@ -96,7 +117,16 @@ impl Pipeline {
             pass.set_bind_group(0, bind_group, &[]);
             pass.dispatch_workgroups(x, y, 1);
         }
-        device.run(self.kernel.name, encoder)
+        device.queue.submit([encoder.finish()])
+    }
+
+    /// Dispatches workgroups and waits until they are done.
+    ///
+    /// # Errors
+    /// Where the device fails.
+    pub fn dispatch(&self, device: &Device, bind_group: &wgpu::BindGroup, x: u32, y: u32) -> Result<(), BackendError> {
+        let submission = self.submit(device, bind_group, (x, y));
+        device.wait(self.kernel.name, Some(submission))
     }
 }
 

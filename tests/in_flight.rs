@@ -1,0 +1,107 @@
+//! Dispatches follow one another without a gap, are timed one by one, and leave the same bytes however many are in
+//! flight.
+//!
+//! A machine without any adapter fails these tests: install software Vulkan (mesa-vulkan-drivers). Nothing
+//! here is skipped.
+
+use skilltree::backend::cpu::CpuBackend;
+use skilltree::backend::gpu::flight::IN_FLIGHT;
+use skilltree::backend::gpu::{GpuBackend, GpuOptions};
+use skilltree::backend::parity;
+use skilltree::backend::{Backend, Stop, Test};
+use skilltree::config::{Overrides, load};
+use skilltree::experiment::parity::{Work, train};
+use skilltree::experiment::senses::{SILENT, robot_at};
+use skilltree::learner::layout::Robot;
+use skilltree::world::Pose;
+use std::path::Path;
+use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
+
+/// Drivers are tested one user at a time.
+static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+
+/// One learner of each arm of a tree.
+static TREE: LazyLock<Work> = LazyLock::new(|| {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/support/tree.toml");
+    let plan = load(&path, &Overrides::default()).expect("the config is good");
+    Work::new(&plan, 4).expect("the experiment can be set up")
+});
+
+const END: Stop = Stop { skill: u32::MAX, trial: u32::MAX };
+
+fn alone() -> MutexGuard<'static, ()> {
+    ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn open(quanta: u32, in_flight: Option<usize>) -> GpuBackend {
+    let options = GpuOptions { quanta: Some(quanta), shard: Some(3), in_flight, ..GpuOptions::default() };
+    GpuBackend::new(&options).expect("an adapter, if only a software one")
+}
+
+fn robots() -> Vec<Robot> {
+    let pose = |number: u32| Pose { x: 40.0 + (number % 32) as f32, y: 60.0, heading: number as f32 };
+    (0..4096).map(|number| robot_at(pose(number), &SILENT, 0, number)).collect()
+}
+
+/// A piece of work for each kernel; each takes several dispatches.
+fn advance(gpu: &mut GpuBackend) {
+    gpu.load(TREE.cohorts()[0].clone()).expect("it fits");
+    while !gpu.advance(END).expect("it runs").iter().all(|cursor| END.holds(cursor)) {}
+}
+
+fn evaluate(gpu: &mut GpuBackend) {
+    gpu.load(TREE.cohorts()[0].clone()).expect("it fits");
+    gpu.evaluate(Test { skill: 6, number: 3, episodes: 40 }).expect("it runs");
+}
+
+fn step(gpu: &mut GpuBackend) {
+    gpu.step(&TREE.cohorts()[0].shared, &mut robots(), 6).expect("it runs");
+}
+
+#[test]
+fn the_next_dispatch_is_there_before_the_device_has_ended_the_one_before() {
+    let _alone = alone();
+    for limit in [1, IN_FLIGHT] {
+        let mut gpu = open(2, Some(limit));
+        for work in [advance, evaluate, step] {
+            gpu.traffic().most = 0;
+            work(&mut gpu);
+            assert_eq!(gpu.traffic().most, limit);
+        }
+    }
+    assert_eq!(IN_FLIGHT, 2);
+}
+
+#[test]
+fn dispatches_are_timed_one_by_one() {
+    let _alone = alone();
+    let mut gpu = open(1, None);
+    for work in [evaluate, step] {
+        work(&mut gpu);
+        let (before, begun) = (gpu.traffic().spent, Instant::now());
+        work(&mut gpu);
+        let (spent, wall) = (gpu.traffic().spent - before, begun.elapsed());
+        assert_eq!(gpu.traffic().most, IN_FLIGHT);
+        // From their submission on they would add up to nearly twice the time that passed.
+        assert!(spent <= wall && 2 * spent >= wall, "{spent:?} of {wall:?}");
+    }
+}
+
+#[test]
+fn no_number_in_flight_changes_a_byte() {
+    let _alone = alone();
+    let cohort = &TREE.cohorts()[0];
+    let mut cpu = CpuBackend::new(0, None).expect("threads");
+    let expected = train(cohort.clone(), &mut cpu).expect("it runs");
+    let mut moved = robots();
+    cpu.step(&cohort.shared, &mut moved, 6).expect("it runs");
+    for (quanta, in_flight) in [(3, 1), (7, 2), (50, 5)] {
+        let mut gpu = open(quanta, Some(in_flight));
+        let found = train(cohort.clone(), &mut gpu).expect("it runs");
+        assert_eq!(expected.difference(&found), None, "{quanta} quanta, {in_flight} in flight");
+        let mut robots = robots();
+        gpu.step(&cohort.shared, &mut robots, 6).expect("it runs");
+        assert_eq!(parity::step(&moved, &robots), None, "{quanta} quanta, {in_flight} in flight");
+    }
+}
