@@ -59,8 +59,8 @@
 //! that no compiler fuses or re-associates. Hence CPU and GPU agree to the byte, and tests compare bytes;
 //! [`backend::parity`] names the first word that differs, and `skilltree devices --parity` asks any adapter.
 //!
-//! A twin may go about it in the CPU's way as long as no sum changes its order: nets side by side, a list of what is not
-//! 0 where a workgroup looks at everything, numbers by value so that the compiler keeps them in lanes. Nets of up to 16
+//! A twin may go about it in the CPU's way as long as no sum changes its order: nets or robots side by side, a list of what
+//! is not 0 where a workgroup looks at everything, numbers by value so that the compiler keeps them in lanes. Nets of up to 16
 //! hidden units take half of the lanes in both languages ([`qnet::forward::lanes_of`]).
 //!
 //! # Modules, in the order in which they may use one another

@@ -55,9 +55,10 @@ pub fn scaling(counts: &[u32], samples: u32, command: &str, note: &mut dyn FnMut
         "teacher.episodes=1",
         "evaluate.at=[0]",
         "evaluate.episodes=2",
-        "skill.dock.trials=4",
+        // Some milliseconds each: whole learners take seconds, of which making their memory is nothing.
+        "skill.dock.trials=16",
         "learning.taught_passes=1",
-        "learning.replays=2",
+        "learning.replays=4",
         "learning.memory=4",
     ];
     let plan = workload::plan(DOCKING, &set, SEEDS)?;
