@@ -7,8 +7,6 @@ use super::pipeline::Pipeline;
 use crate::backend::BackendError;
 use crate::learner::layout::Dispatch;
 use std::collections::VecDeque;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 /// Dispatches that the host keeps submitted: one runs, and the next is there when it ends.
@@ -67,8 +65,8 @@ impl<'a> Flight<'a> {
         self.device.queue.write_buffer(self.uniform, 0, bytemuck::bytes_of(dispatch));
         let at = Instant::now();
         let submission = self.pipeline.submit(self.device, group, size);
-        self.traffic.left(&self.device.queue);
         self.sent.push_back(Sent { share, submission, at });
+        self.traffic.most = self.traffic.most.max(self.sent.len());
         while self.sent.len() >= self.traffic.limit {
             self.wait()?;
         }
@@ -153,8 +151,8 @@ impl Clock {
 #[derive(Debug)]
 pub struct Traffic {
     limit: usize,
-    flying: Arc<AtomicUsize>,
-    /// Most dispatches that the device had yet to end when one was submitted, that one included.
+    /// Most dispatches that were submitted and not yet waited for. Whether the device had ended one of them by then, no
+    /// driver tells without being waited for.
     pub most: usize,
     /// Time that the governor was told, in all.
     pub spent: Duration,
@@ -163,17 +161,7 @@ pub struct Traffic {
 impl Traffic {
     /// At most `limit` in flight.
     pub fn new(limit: usize) -> Self {
-        Self { limit: limit.max(1), flying: Arc::default(), most: 0, spent: Duration::ZERO }
-    }
-
-    /// Counts what was just submitted. The device, and not the host's list, says what has ended: wgpu asks it on every
-    /// submission.
-    fn left(&mut self, queue: &wgpu::Queue) {
-        let flying = Arc::clone(&self.flying);
-        self.most = self.most.max(flying.fetch_add(1, Ordering::Relaxed) + 1);
-        queue.on_submitted_work_done(move || {
-            flying.fetch_sub(1, Ordering::Relaxed);
-        });
+        Self { limit: limit.max(1), most: 0, spent: Duration::ZERO }
     }
 }
 
