@@ -191,15 +191,14 @@ impl Backend for GpuBackend {
         // The old cohort's memory is free before the new one's is taken.
         self.loaded = None;
         self.advance.hold(wanted(&cohort).into_iter().filter(|words| *words <= self.held).collect());
-        let (pipeline, _) = self.advance.ready(&self.device)?;
+        let dispatch = self.uniform(ADVANCE.name)?;
+        let (pipeline, governor) = self.advance.ready(&self.device)?;
         let turns = quantum_turns(&cohort.shared, holders(&cohort, pipeline.held()));
         let most = ceiling(self.verdict.loop_budget, turns);
-        self.advance.set_ceiling(most);
+        governor.set_ceiling(most);
         self.evaluate.set_ceiling(most);
         let common = Common::new(&self.device, ADVANCE.name, &cohort.shared)?;
         let shards = shards::upload(&self.device, &cohort, self.shard)?;
-        let dispatch = self.uniform(ADVANCE.name)?;
-        let (pipeline, _) = self.advance.ready(&self.device)?;
         let bindings = shards
             .iter()
             .map(|shard| {
