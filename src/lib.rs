@@ -9,12 +9,12 @@
 //! a 32-wide array. Lanes are sonar rays, then wall segments, then hidden units. Learners never wait for one
 //! another and never share a sum, so learner k alone leaves the same bytes as learner k among thousands.
 //!
-//! A learner is a state machine whose whole state is in its [`learner::layout::Cursor`]. Kernel [`advance`]
-//! moves it on by at most *n* quanta (one trial step, or one replayed transition), so a dispatch can be as
+//! A learner is a state machine whose whole state is in its [`learner::layout::LearnerState`]. Kernel [`advance`]
+//! moves it on by at most *n* iterations (one trial step, or one replayed transition), so a dispatch can be as
 //! short as a watchdog wants it. Kernel [`mod@evaluate`] runs greedy tests with the nets read-only, and
 //! kernel [`mod@step`] lets a robot carry out given actions.
 //!
-//! The host keeps two dispatches in flight ([`backend::gpu::flight`]) and looks at the cursors once in several. While a
+//! The host keeps two dispatches in flight ([`backend::gpu::flight`]) and looks at the states once in several. While a
 //! learner replays, kernel [`advance`] holds the weights of the skill in training in its workgroup's memory where they
 //! fit ([`backend::gpu::held`]); the CPU's twin works on a copy that stays in the cache. What either is worth on a graphics
 //! card has not been measured.
@@ -94,21 +94,20 @@
 //!   skills of a tree may take them as inputs.
 //! - Thresholds are learned on the host, between two skills, from nets and lessons that the device hands over once:
 //!   one implementation serves every backend.
-pub mod advance;
 pub mod backend;
 pub mod bench;
 pub mod cli;
 pub mod config;
-pub mod evaluate;
-pub mod experiment;
-pub mod learner;
-pub mod lesson;
+pub mod env;
+pub mod kernels;
+pub mod layout;
+pub mod learn;
 pub mod math;
+pub mod policy;
 pub mod qnet;
-pub mod record;
 pub mod report;
-pub mod robot;
-pub mod skill;
-pub mod step;
+pub mod run_folder;
 pub mod teacher;
+pub mod toml;
+pub mod train;
 pub mod world;

@@ -11,10 +11,10 @@ use skilltree::bench::measure::Measured;
 use skilltree::bench::result::Report;
 use skilltree::bench::tasks::{Decisions, Hierarchy, Replay, RobotSteps, Rule, Size, Task};
 use skilltree::bench::workload::HIERARCHY;
-use skilltree::learner::layout::{Cursor, Episode, RAYS, Robot};
-use skilltree::learner::memory::Shared;
+use skilltree::env::observe::{DRAW_ACTUATOR, DRAW_COMPASS, DRAW_LIGHT};
+use skilltree::env::workgroup::CohortData;
+use skilltree::layout::{Episode, LearnerState, RAYS, Robot};
 use skilltree::math::rng::{Purpose, place_of};
-use skilltree::skill::observe::{DICE_ACTUATOR, DICE_COMPASS, DICE_LIGHT};
 use std::ops::Range;
 use std::path::Path;
 use std::process::Command;
@@ -60,7 +60,7 @@ impl Backend for Broken {
     fn load(&mut self, cohort: Cohort) -> Result<(), BackendError> {
         self.inner.load(cohort)
     }
-    fn advance(&mut self, stop: Stop) -> Result<&[Cursor], BackendError> {
+    fn advance(&mut self, stop: Stop) -> Result<&[LearnerState], BackendError> {
         self.inner.advance(stop)
     }
     fn learners(&self) -> usize {
@@ -80,8 +80,8 @@ impl Backend for Broken {
         }
         Ok(self.cohort.insert(cohort))
     }
-    fn step(&mut self, shared: &Shared, robots: &mut [Robot], quanta: u32) -> Result<(), BackendError> {
-        self.inner.step(shared, robots, quanta)?;
+    fn step(&mut self, shared: &CohortData, robots: &mut [Robot], iterations: u32) -> Result<(), BackendError> {
+        self.inner.step(shared, robots, iterations)?;
         if self.fault == Fault::Robot {
             flip(&mut robots[17].heading);
         }
@@ -323,5 +323,5 @@ fn peers_know_which_draws_are_for_what() {
         told.expect("a line with the draws").split(", ").map(|word| word.parse().expect("a number")).collect();
     // The first bearing that does not stand where its draw does has a word of a draw that another one shares.
     let shared = (0..RAYS).find(|bearing| place_of(*bearing) != *bearing).expect("a second word");
-    assert_eq!(told, [Purpose::Given as usize, shared, DICE_ACTUATOR, DICE_COMPASS, DICE_LIGHT as usize]);
+    assert_eq!(told, [Purpose::Given as usize, shared, DRAW_ACTUATOR, DRAW_COMPASS, DRAW_LIGHT as usize]);
 }

@@ -225,7 +225,7 @@ fn usage_mistakes_are_refused_before_anything_is_done() {
         (&["--set", "arm.taught-adm.learning.rate=1"], &["did you mean `taught-adam`?"]),
         (&["--set", "arms=['nobody']"], &["nobody"]),
         (&["--set", "arms=[]"], &["arms"]),
-        (&["--quanta", "0"], &["--quanta"]),
+        (&["--iterations", "0"], &["--iterations"]),
         (&["--cohort", "0"], &["--cohort"]),
         (&["--cohort", "4294967296"], &["--cohort"]),
         (&["--threads", "-1"], &["-1"]),
@@ -328,7 +328,7 @@ fn another_experiments_folder_is_left_alone() {
     fs::remove_dir(&config).unwrap();
     fs::write(&config, saved).unwrap();
     // Somebody is at work there.
-    let lock = skilltree::record::folder::lock(&skilltree::record::disk::FileSystem, &run).unwrap();
+    let lock = skilltree::run_folder::folder::lock(&skilltree::run_folder::file_system::FileSystem, &run).unwrap();
     desk.refuses(&line, 1, &["another skilltree process"]);
     desk.refuses(&["report", "run"], 1, &["another skilltree process"]);
     drop(lock);
@@ -345,7 +345,7 @@ fn a_damaged_part_stops_the_run_and_says_which() {
     let out = desk.path().join("run");
     let plan = plan();
     let worlds = [("world.toml", plan.worlds[0].text.as_str())];
-    let mut folder = skilltree::record::RunFolder::open(&out, &plan.resolved, &worlds).unwrap();
+    let mut folder = skilltree::run_folder::RunFolder::open(&out, &plan.resolved, &worlds).unwrap();
     folder.commit_part("arm0-seed0_arm0-seed0", b"not the words of a learner").unwrap();
     drop(folder);
     let part = out.join("parts/arm0-seed0_arm0-seed0");
@@ -464,7 +464,7 @@ fn reports_of_vouched_nonsense_do_not_panic() {
         let whole = &finished()[name];
         for bytes in [whole[..whole.len() / 2].to_vec(), vec![], b"PAR1 nonsense PAR1".to_vec(), vec![0xff; 5000]] {
             let mut value: Value = serde_json::from_str(&manifest).unwrap();
-            let digest = skilltree::record::manifest::FileDigest::of(&bytes);
+            let digest = skilltree::run_folder::manifest::FileDigest::of(&bytes);
             value["files"][name] = serde_json::to_value(&digest).unwrap();
             fs::write(run.join("manifest.json"), value.to_string()).unwrap();
             fs::write(run.join(name), bytes).unwrap();

@@ -5,7 +5,7 @@ mod plans;
 use plans::{attempt_files, read_again, with};
 use skilltree::config::plan::{Action, Arm, Child, Event, Input, NoiseKind, Optimiser, Plan};
 use skilltree::config::{ConfigError, Overrides, Place, keys, load, parse_seeds};
-use skilltree::learner::build::Shape;
+use skilltree::train::allocate::Shape;
 use std::path::{Path, PathBuf};
 
 fn shipped(name: &str) -> PathBuf {

@@ -2,7 +2,7 @@
 
 mod support;
 
-use skilltree::record::tables::{EVALUATIONS, TRIALS, read_evaluations, read_trials};
+use skilltree::run_folder::tables::{EVALUATIONS, TRIALS, read_evaluations, read_trials};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -22,7 +22,7 @@ fn run(out: &Path, more: &[&str]) {
 
 /// Every file but those that say how and where the run was carried out. What the manifest says of them must be true.
 fn results(out: &Path) -> BTreeMap<String, Vec<u8>> {
-    skilltree::record::FinishedRun::read(out).unwrap();
+    skilltree::run_folder::FinishedRun::read(out).unwrap();
     let mut files = tree(out);
     assert!(
         files.keys().all(|name| !["skilltree-tmp", "parts", "checkpoint"].iter().any(|kept| name.contains(kept))),
@@ -52,8 +52,8 @@ fn no_way_of_carrying_it_out_changes_a_byte() {
     assert_eq!(expected.keys().filter(|name| name.ends_with(".safetensors")).count(), 15);
     for (number, way) in [
         &["--threads", "1"][..],
-        &["--quanta", "1"],
-        &["--quanta", "37", "--threads", "3"],
+        &["--iterations", "1"],
+        &["--iterations", "37", "--threads", "3"],
         &["--cohort", "1"],
         &["--cohort", "2"],
         &["--cohort", "15"],
@@ -195,7 +195,7 @@ fn killed_ten_times_it_leaves_the_same_bytes() {
         &[&["--cohort", "1"]],
         &[
             &["--cohort", "1", "--threads", "1"],
-            &["--cohort", "2", "--quanta", "11"],
+            &["--cohort", "2", "--iterations", "11"],
             &["--cohort", "3", "--threads", "2"],
         ],
     ];
@@ -273,7 +273,7 @@ fn a_complete_run_is_left_as_it_is() {
         tree(&out).keys().filter(name).map(|name| (name.clone(), time(name))).collect::<Vec<_>>()
     };
     let (files, modified) = (tree(&out), times());
-    for way in [&["--seeds", "0"][..], &["--seeds", "0", "--cohort", "7", "--threads", "1", "--quanta", "3"]] {
+    for way in [&["--seeds", "0"][..], &["--seeds", "0", "--cohort", "7", "--threads", "1", "--iterations", "3"]] {
         let output = tiny(&out, way).output().unwrap();
         let message = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(0), "{message}");

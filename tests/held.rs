@@ -5,14 +5,14 @@
 //! here is skipped.
 
 use skilltree::backend::cpu::CpuBackend;
-use skilltree::backend::gpu::held::{holders, wanted};
 use skilltree::backend::gpu::source::{ADVANCE, Kernel, Part};
+use skilltree::backend::gpu::workgroup_weights::{holders, wanted};
 use skilltree::backend::gpu::{GpuBackend, GpuOptions};
 use skilltree::backend::{Cohort, parity};
 use skilltree::config::{Overrides, load};
-use skilltree::experiment::parity::{Sample, Work, train};
-use skilltree::learner::layout::Cursor;
-use skilltree::learner::phase::PHASE_FAILED;
+use skilltree::layout::LearnerState;
+use skilltree::layout::phase::PHASE_FAILED;
+use skilltree::train::parity::{Sample, Work, train};
 use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -37,7 +37,7 @@ fn docking(set: &[&str]) -> Cohort {
     let rows = "arm.taught-td0.learning.optimiser='adam-rows'";
     let set = [&[arms, rows, "skill.dock.trials=2", "skill.dock.max_steps=12"], set].concat();
     let cohort = cohort("configs/docking.toml", &set, 3);
-    let mut optimisers: Vec<u32> = cohort.settings.iter().map(|settings| settings.optimiser).collect();
+    let mut optimisers: Vec<u32> = cohort.params.iter().map(|params| params.optimiser).collect();
     optimisers.sort_unstable();
     assert_eq!(optimisers, [0, 1, 2]);
     cohort
@@ -52,8 +52,8 @@ fn on_cpu(cohort: &Cohort) -> Sample {
     train(cohort.clone(), &mut CpuBackend::new(0, None).expect("threads")).expect("it runs")
 }
 
-fn open(held: Option<u32>, quanta: Option<u32>) -> GpuBackend {
-    let options = GpuOptions { held, quanta, shard: Some(2), ..GpuOptions::default() };
+fn open(held: Option<u32>, iterations: Option<u32>) -> GpuBackend {
+    let options = GpuOptions { held, iterations, shard: Some(2), ..GpuOptions::default() };
     GpuBackend::new(&options).expect("an adapter, if only a software one")
 }
 
@@ -65,9 +65,13 @@ fn a_tree_that_is_held_in_part_leaves_the_bytes_of_the_cpu() {
     // Half of the skills that are trained: 16 units beside 32, one net beside six, all optimisers.
     let sizes = wanted(&tree);
     let trained = holders(&tree, u32::MAX);
-    for (held, quanta) in [(0, None), (sizes[sizes.len() / 2], Some(7))] {
-        let mut gpu = open(Some(held), quanta);
-        assert_eq!(expected.difference(&train(tree.clone(), &mut gpu).expect("it runs")), None, "{held} {quanta:?}");
+    for (held, iterations) in [(0, None), (sizes[sizes.len() / 2], Some(7))] {
+        let mut gpu = open(Some(held), iterations);
+        assert_eq!(
+            expected.difference(&train(tree.clone(), &mut gpu).expect("it runs")),
+            None,
+            "{held} {iterations:?}"
+        );
         let holders = holders(&tree, gpu.held());
         assert_eq!(gpu.held(), held.max(1));
         assert_eq!((holders != 0, holders != trained), (held > 0, true), "{holders:b} of {trained:b}");
@@ -81,10 +85,10 @@ fn every_optimiser_leaves_the_bytes_of_the_cpu() {
     let wide = docking(&["learning.shared_net=true"]);
     for cohort in [lean(), wide] {
         let expected = on_cpu(&cohort);
-        for quanta in [Some(3), None] {
-            let mut gpu = open(None, quanta);
+        for iterations in [Some(3), None] {
+            let mut gpu = open(None, iterations);
             let found = train(cohort.clone(), &mut gpu).expect("it runs");
-            assert_eq!(expected.difference(&found), None, "{quanta:?}");
+            assert_eq!(expected.difference(&found), None, "{iterations:?}");
             assert_eq!((gpu.held(), holders(&cohort, gpu.held())), (wanted(&cohort)[0], 1));
         }
     }
@@ -96,13 +100,13 @@ fn every_optimiser_leaves_the_bytes_of_the_cpu() {
 fn a_learner_that_fails_leaves_the_bytes_of_the_cpu() {
     let _alone = alone();
     let mut cohort = lean();
-    for settings in &mut cohort.settings[1..] {
-        settings.rate = 3.0e38;
+    for params in &mut cohort.params[1..] {
+        params.rate = 3.0e38;
     }
     let expected = on_cpu(&cohort);
     let after = &expected.cohorts()[0];
-    let failed = |cursor: &Cursor| cursor.phase == PHASE_FAILED && cursor.replay_left > 0 && cursor.updates > 0;
-    assert_eq!(after.cursors.iter().map(failed).collect::<Vec<_>>(), [false, true, true]);
+    let failed = |state: &LearnerState| state.phase == PHASE_FAILED && state.replay_left > 0 && state.updates > 0;
+    assert_eq!(after.states.iter().map(failed).collect::<Vec<_>>(), [false, true, true]);
     let found = train(cohort.clone(), &mut open(None, None)).expect("it runs");
     assert_eq!(parity::advance(after, &found.cohorts()[0]), None);
 }
@@ -110,7 +114,7 @@ fn a_learner_that_fails_leaves_the_bytes_of_the_cpu() {
 /// The shipped kernel with another statement in place of one.
 fn broken(from: &str, to: &str) -> Kernel {
     let part = |part: &Part| {
-        if part.path != "advance.wgsl" {
+        if part.path != "kernels/train.wgsl" {
             return *part;
         }
         assert_eq!(part.text.matches(from).count(), 1, "`{from}` must stand in {} once", part.path);
@@ -133,14 +137,14 @@ fn weights_that_are_not_written_back_are_found_out() {
         // At the end of a dispatch alone.
         (
             "the end of a dispatch",
-            broken("    let_go(lane, base);\n    cursor.agent = agent;", "    cursor.agent = agent;"),
+            broken("    let_go(lane, base);\n    state.agent = agent;", "    state.agent = agent;"),
         ),
     ] {
         gpu.replace(kernel);
         let found = train(cohort.clone(), &mut gpu).expect("it runs");
         let found = parity::advance(&expected.cohorts()[0], &found.cohorts()[0]);
         let found = found.unwrap_or_else(|| panic!("without {lacking} nothing differs"));
-        assert!(found.field.starts_with("nets word ") || found.field.starts_with("cursor "), "{found}");
+        assert!(found.field.starts_with("nets word ") || found.field.starts_with("state "), "{found}");
     }
     gpu.replace(ADVANCE);
     assert_eq!(expected.difference(&train(cohort, &mut gpu).expect("it runs")), None);

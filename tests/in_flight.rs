@@ -5,14 +5,14 @@
 //! here is skipped.
 
 use skilltree::backend::cpu::CpuBackend;
-use skilltree::backend::gpu::flight::IN_FLIGHT;
+use skilltree::backend::gpu::in_flight::IN_FLIGHT;
 use skilltree::backend::gpu::{GpuBackend, GpuOptions};
 use skilltree::backend::parity;
 use skilltree::backend::{Backend, Stop, Test};
 use skilltree::config::{Overrides, load};
-use skilltree::experiment::parity::{Work, train};
-use skilltree::experiment::senses::{SILENT, robot_at};
-use skilltree::learner::layout::Robot;
+use skilltree::layout::Robot;
+use skilltree::train::observation::{SILENT, robot_at};
+use skilltree::train::parity::{Work, train};
 use skilltree::world::Pose;
 use std::path::Path;
 use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
@@ -34,8 +34,8 @@ fn alone() -> MutexGuard<'static, ()> {
     ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn open(quanta: u32, in_flight: Option<usize>) -> GpuBackend {
-    let options = GpuOptions { quanta: Some(quanta), shard: Some(3), in_flight, ..GpuOptions::default() };
+fn open(iterations: u32, in_flight: Option<usize>) -> GpuBackend {
+    let options = GpuOptions { iterations: Some(iterations), shard: Some(3), in_flight, ..GpuOptions::default() };
     GpuBackend::new(&options).expect("an adapter, if only a software one")
 }
 
@@ -47,7 +47,7 @@ fn robots() -> Vec<Robot> {
 /// A piece of work for each kernel; each takes several dispatches.
 fn advance(gpu: &mut GpuBackend) {
     gpu.load(TREE.cohorts()[0].clone()).expect("it fits");
-    while !gpu.advance(END).expect("it runs").iter().all(|cursor| END.holds(cursor)) {}
+    while !gpu.advance(END).expect("it runs").iter().all(|state| END.holds(state)) {}
 }
 
 fn evaluate(gpu: &mut GpuBackend) {
@@ -96,12 +96,12 @@ fn no_number_in_flight_changes_a_byte() {
     let expected = train(cohort.clone(), &mut cpu).expect("it runs");
     let mut moved = robots();
     cpu.step(&cohort.shared, &mut moved, 6).expect("it runs");
-    for (quanta, in_flight) in [(3, 1), (7, 2), (50, 5)] {
-        let mut gpu = open(quanta, Some(in_flight));
+    for (iterations, in_flight) in [(3, 1), (7, 2), (50, 5)] {
+        let mut gpu = open(iterations, Some(in_flight));
         let found = train(cohort.clone(), &mut gpu).expect("it runs");
-        assert_eq!(expected.difference(&found), None, "{quanta} quanta, {in_flight} in flight");
+        assert_eq!(expected.difference(&found), None, "{iterations} iterations, {in_flight} in flight");
         let mut robots = robots();
         gpu.step(&cohort.shared, &mut robots, 6).expect("it runs");
-        assert_eq!(parity::step(&moved, &robots), None, "{quanta} quanta, {in_flight} in flight");
+        assert_eq!(parity::step(&moved, &robots), None, "{iterations} iterations, {in_flight} in flight");
     }
 }

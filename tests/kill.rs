@@ -60,9 +60,9 @@ fn is_part(name: &str) -> bool {
 }
 
 /// Moments, the same in every run (splitmix64).
-struct Dice(u64);
+struct StepRandom(u64);
 
-impl Dice {
+impl StepRandom {
     fn share(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -96,9 +96,9 @@ fn check(files: &Files, expected: &Files, parts: &mut Files) {
 
 /// Waits for the moment of the kill: a share of the time that a run takes, or, one time in three, a few milliseconds
 /// after the tables begin to be written. None if the run ends before.
-fn wait(child: &mut Child, out: &Path, dice: &mut Dice, takes: Duration) -> Option<()> {
-    let finishing = dice.share() < 1.0 / 3.0;
-    let mut until = Instant::now() + takes.mul_f64(1.1 * dice.share());
+fn wait(child: &mut Child, out: &Path, random: &mut StepRandom, takes: Duration) -> Option<()> {
+    let finishing = random.share() < 1.0 / 3.0;
+    let mut until = Instant::now() + takes.mul_f64(1.1 * random.share());
     let mut armed = !finishing;
     loop {
         if child.try_wait().unwrap().is_some() {
@@ -106,7 +106,7 @@ fn wait(child: &mut Child, out: &Path, dice: &mut Dice, takes: Duration) -> Opti
         }
         if !armed && out.join("trials.parquet").exists() {
             armed = true;
-            until = Instant::now() + takes.mul_f64(0.5 * dice.share());
+            until = Instant::now() + takes.mul_f64(0.5 * random.share());
         }
         if armed && Instant::now() >= until {
             return Some(());
@@ -126,14 +126,14 @@ fn killed_runs_go_on_and_lose_nothing() {
     let takes = began.elapsed();
     let (expected, mut parts) = (visible(&out), Files::new());
     assert!(expected.contains_key("report.html") && !expected.keys().any(|name| is_part(name)));
-    let (mut dice, mut tally) = (Dice(1993), Tally::default());
+    let (mut random, mut tally) = (StepRandom(1993), Tally::default());
     let out = desk.path().join("run");
     while tally.kills < wanted {
         let before = visible(&out);
         let mut child = start(&out);
         // All that a complete run still has to do is its report. That is killed now and then, or there would be little else.
-        let spared = before.contains_key("manifest.json") && dice.share() < 0.7;
-        let killed = !spared && wait(&mut child, &out, &mut dice, takes).is_some();
+        let spared = before.contains_key("manifest.json") && random.share() < 0.7;
+        let killed = !spared && wait(&mut child, &out, &mut random, takes).is_some();
         if !spared {
             child.kill().unwrap();
         }

@@ -8,19 +8,19 @@ use made_up::made_up;
 use skilltree::backend::cpu::CpuBackend;
 use skilltree::backend::{Backend, Cohort, Stop};
 use skilltree::config::{Overrides, load, plan::Plan};
-use skilltree::experiment::group::groups;
-use skilltree::learner::build::Shape;
-use skilltree::learner::layout::{BASE_WORDS, Cursor, LANES, MAX_CHILDREN, RECORD_WORDS, Settings};
-use skilltree::learner::memory::{Learner, Scratch, Shared};
-use skilltree::learner::phase::{PHASE_DONE, PHASE_FAILED};
-use skilltree::lesson::record::{CUT, ENDED};
-use skilltree::lesson::replay::{begin_replay, recent_lesson, replay_step, taught_lesson};
-use skilltree::math::functions::squash;
+use skilltree::env::segments::SegmentGrid;
+use skilltree::env::workgroup::{CohortData, Learner, Scratch};
+use skilltree::layout::phase::{PHASE_DONE, PHASE_FAILED};
+use skilltree::layout::{BASE_WORDS, HyperParams, LANES, LearnerState, MAX_CHILDREN, RECORD_WORDS};
+use skilltree::learn::lesson::{CUT, ENDED};
+use skilltree::learn::td_lambda::{begin_replay, recent_lesson, replay_step, taught_lesson};
+use skilltree::math::functions::tanh;
+use skilltree::policy::features::encode;
+use skilltree::policy::select::{NO_CHILD, inverse_temperature, pick, weigh};
 use skilltree::qnet::backward::{CLOCK_SECOND, backward};
 use skilltree::qnet::forward::{forward, net_of};
-use skilltree::robot::floor::Floor;
-use skilltree::skill::choose::{NO_CHILD, pick, sharpness, weigh};
-use skilltree::skill::encode::encode;
+use skilltree::train::allocate::Shape;
+use skilltree::train::batch_group::groups;
 use std::path::Path;
 
 /// A learning rate so small that no Q-value changes, and a power of two, so that what was learned can be read off.
@@ -47,9 +47,9 @@ fn random(mut state: u64) -> impl FnMut() -> f64 {
 
 /// One learner of the docking skill, without a bank, and its memory.
 struct Bench {
-    shared: Shared,
-    settings: Vec<Settings>,
-    cursor: Cursor,
+    shared: CohortData,
+    params: Vec<HyperParams>,
+    state: LearnerState,
     nets: Vec<f32>,
     lessons: Vec<u32>,
     rows: Vec<u32>,
@@ -59,12 +59,12 @@ impl Bench {
     fn new(set: &[&str]) -> Self {
         let plan = plan(set);
         let shape = Shape::new(plan.world(), &[&plan.arms[0]]).expect("the skill fits");
-        let (settings, cursor, nets) = shape.learner(&plan.arms[0], plan.run_seed, 0);
-        let floor = Floor::new(&shape.atlas.plan, &shape.atlas.words);
+        let (params, state, nets) = shape.learner(&plan.arms[0], plan.run_seed, 0);
+        let floor = SegmentGrid::new(&shape.tables.plan, &shape.tables.words);
         Self {
-            shared: Shared { floor, skills: shape.skills, atlas: shape.atlas.words, bank: vec![0; 4096] },
-            settings,
-            cursor,
+            shared: CohortData { floor, skills: shape.skills, tables: shape.tables.words, bank: vec![0; 4096] },
+            params,
+            state,
             nets,
             lessons: vec![0; shape.lessons_stride],
             rows: vec![0; shape.rows_stride],
@@ -74,8 +74,8 @@ impl Bench {
     fn learner(&mut self) -> Learner<'_> {
         Learner {
             shared: &self.shared,
-            settings: &self.settings,
-            cursor: &mut self.cursor,
+            params: &self.params,
+            state: &mut self.state,
             nets: &mut self.nets,
             lessons: &mut self.lessons,
             rows: &mut self.rows,
@@ -110,11 +110,11 @@ impl Bench {
         let mut learner = self.learner();
         begin_replay(&mut learner, 0, taught, 0);
         let mut returns = Vec::new();
-        while learner.cursor.replay_left > 0 || learner.cursor.replay_open == 1 {
-            let open = learner.cursor.replay_open == 1;
+        while learner.state.replay_left > 0 || learner.state.replay_open == 1 {
+            let open = learner.state.replay_open == 1;
             replay_step(&mut learner, &mut scratch, 0);
             if !open {
-                returns.push(learner.cursor.next_return);
+                returns.push(learner.state.next_return);
             }
         }
         returns
@@ -235,7 +235,7 @@ fn q_values_match_plain_f64_nets() {
         for _ in 0..200 {
             let mut scratch = scratch_of(&made_up(&mut next));
             encode(&bench.shared, &mut scratch, &bench.shared.skills[0], false);
-            forward(&bench.nets, &mut scratch, &bench.shared.skills[0], &bench.settings[0], 0);
+            forward(&bench.nets, &mut scratch, &bench.shared.skills[0], &bench.params[0], 0);
             let x = inputs_of(&scratch.record);
             for (i, (found, exact)) in scratch.inputs.iter().zip(&x).enumerate() {
                 assert!((f64::from(*found) - exact).abs() < 1.0e-6, "input {i}: {found} for {exact}");
@@ -265,14 +265,14 @@ fn one_replayed_transition_descends_the_gradient() {
         let units = format!("learning.hidden={hidden}");
         let set = ["learning.optimiser=\"sgd\"", "learning.momentum=0.0", &units, "learning.init=0.3"];
         let mut bench = Bench::new(&set);
-        bench.settings[0].rate = 256.0;
-        bench.settings[0].beta1 = 0.0;
+        bench.params[0].rate = 256.0;
+        bench.params[0].beta1 = 0.0;
         let step = Step { senses: made_up(&mut next), child, allowed: ALL, reward };
         bench.keep(&Lesson { steps: vec![step], last: made_up(&mut next), end: ENDED });
         let before = bench.nets.clone();
         let net = Net::of(&bench, child);
         let returns = bench.replay(1);
-        assert_eq!(returns, [reward * bench.settings[0].value_scale]);
+        assert_eq!(returns, [reward * bench.params[0].value_scale]);
         let slopes = net.differences(&inputs_of(&step.senses), f64::from(returns[0]));
         let (first, words) = (bench.net(child), bench.rows_of_net() * LANES);
         let change = |i: usize| f64::from(bench.nets[first + i]) - f64::from(before[first + i]);
@@ -301,18 +301,18 @@ fn one_replayed_transition_descends_the_gradient() {
 #[test]
 fn momentum_carries_the_last_change_on() {
     let mut bench = Bench::new(&["learning.optimiser=\"sgd\"", "learning.momentum=0.5", "learning.init=0.3"]);
-    bench.settings[0].rate = 0.25;
-    bench.settings[0].beta1 = 0.5;
+    bench.params[0].rate = 0.25;
+    bench.params[0].beta1 = 0.5;
     let mut next = random(5);
     let skill = bench.shared.skills[0];
     let mut scratch = scratch_of(&made_up(&mut next));
     encode(&bench.shared, &mut scratch, &skill, false);
-    forward(&bench.nets, &mut scratch, &skill, &bench.settings[0], 0);
+    forward(&bench.nets, &mut scratch, &skill, &bench.params[0], 0);
     let start = Net::of(&bench, 2);
-    backward(&mut bench.nets, &mut scratch, &skill, &bench.settings[0], 0, 2, 0.5, bench.settings[0].rate);
+    backward(&mut bench.nets, &mut scratch, &skill, &bench.params[0], 0, 2, 0.5, bench.params[0].rate);
     let one = Net::of(&bench, 2);
     // Nothing new to learn: only the momentum moves the weights, half as far.
-    backward(&mut bench.nets, &mut scratch, &skill, &bench.settings[0], 0, 2, 0.0, bench.settings[0].rate);
+    backward(&mut bench.nets, &mut scratch, &skill, &bench.params[0], 0, 2, 0.0, bench.params[0].rate);
     let two = Net::of(&bench, 2);
     let moved = |a: &Net, b: &Net| a.0.iter().zip(&b.0).map(|(a, b)| b - a).collect::<Vec<f64>>();
     let first = moved(&start, &one);
@@ -343,9 +343,9 @@ fn adam_follows_the_formula(optimiser: &str, hidden: &str, epsilon: &str, rate: 
     let (of_epsilon, of_rate) = (format!("learning.epsilon={epsilon}"), format!("learning.rate={rate}"));
     let mut bench = Bench::new(&[&of_optimiser, &of_hidden, "learning.init=0.3", &of_epsilon, &of_rate]);
     let (epsilon, given): (f32, f32) = (epsilon.parse().expect("a number"), rate.parse().expect("a number"));
-    let settings = bench.settings[0];
-    let (rate, beta1, beta2) = (f64::from(settings.rate), f64::from(settings.beta1), f64::from(settings.beta2));
-    let epsilon2 = f64::from(settings.epsilon2);
+    let params = bench.params[0];
+    let (rate, beta1, beta2) = (f64::from(params.rate), f64::from(params.beta1), f64::from(params.beta2));
+    let epsilon2 = f64::from(params.epsilon2);
     assert_eq!((rate, beta1, beta2), (f64::from(given), f64::from(0.9_f32), f64::from(0.999_f32)));
     assert_eq!(epsilon2, f64::from(epsilon * epsilon));
     let mut next = random(6);
@@ -367,7 +367,7 @@ fn adam_follows_the_formula(optimiser: &str, hidden: &str, epsilon: &str, rate: 
             mean[i] = beta1 * mean[i] + (1.0 - beta1) * slope;
             let row = &slopes[i / LANES * LANES..slopes.len().min((i / LANES + 1) * LANES)];
             // The last row has a single weight, the output's bias.
-            let weights = if i / LANES + 1 == bench.rows_of_net() { 1 } else { settings.hidden };
+            let weights = if i / LANES + 1 == bench.rows_of_net() { 1 } else { params.hidden };
             let own = slope * slope;
             let of_row = row.iter().map(|slope| slope * slope).sum::<f64>() / f64::from(weights);
             let squared = if optimiser == "adam" { own } else { of_row };
@@ -403,27 +403,27 @@ fn exact(lambda: f32) -> Bench {
     bench.nets.iter_mut().for_each(|w| *w = 0.0);
     let skill = bench.shared.skills[0];
     // A weight of 40 makes a hidden unit a copy of a bumper's bit.
-    let copy = squash(40.0);
-    assert!(copy > 0.999_999 && squash(0.0) == 0.0);
+    let copy = tanh(40.0);
+    assert!(copy > 0.999_999 && tanh(0.0) == 0.0);
     for (child, bumper, worth) in [(0, 0, 0.5), (1, 0, -0.5), (2, 1, 0.1875_f32)] {
         let near = worth.atanh();
         let candidates = (-200..200).map(|i| f32::from_bits(near.to_bits().wrapping_add_signed(i)));
-        let weight = candidates.into_iter().find(|w| squash(copy * *w) == worth).expect("some weight gives this value");
+        let weight = candidates.into_iter().find(|w| tanh(copy * *w) == worth).expect("some weight gives this value");
         let net = net_of(&skill, 0, child) as usize;
         bench.nets[net + (48 + bumper) * LANES + bumper] = 40.0;
         bench.nets[net + (skill.inputs as usize + 1) * LANES + bumper] = weight;
     }
-    let settings = &mut bench.settings[0];
-    settings.rate = HARDLY;
-    settings.beta1 = 0.0;
-    settings.gamma = 0.5;
-    settings.lambda = lambda;
-    settings.value_scale = 1.0 / 64.0;
-    settings.target_limit = 0.875;
-    settings.policy_threshold = 0.0;
-    settings.sharpness_start = 20.0;
-    settings.taught_always = 0;
-    settings.timeout_terminal = 0;
+    let params = &mut bench.params[0];
+    params.rate = HARDLY;
+    params.beta1 = 0.0;
+    params.gamma = 0.5;
+    params.lambda = lambda;
+    params.value_scale = 1.0 / 64.0;
+    params.target_limit = 0.875;
+    params.policy_threshold = 0.0;
+    params.inverse_temperature_start = 20.0;
+    params.taught_always = 0;
+    params.timeout_terminal = 0;
     bench
 }
 
@@ -468,7 +468,7 @@ fn expect(bench: &mut Bench, lesson: &Lesson, taught: u32, returns: [f32; 5], le
         assert!(near(bench.bias(child) / HARDLY, expected), "{what}: step {step}");
     }
     let learned = learned.iter().filter(|learned| **learned).count() as u32;
-    assert_eq!((bench.bias(2), bench.cursor.updates), (0.0, learned), "{what}");
+    assert_eq!((bench.bias(2), bench.state.updates), (0.0, learned), "{what}");
 }
 
 #[test]
@@ -490,12 +490,12 @@ fn five_step_returns_are_the_ones_computed_by_hand() {
     expect(&mut exact(1.0), &cut, 0, full_cut, all, "lambda 1, cut");
     // Cut, and a cut counts as an end.
     let mut terminal = exact(0.5);
-    terminal.settings[0].timeout_terminal = 1;
+    terminal.params[0].timeout_terminal = 1;
     expect(&mut terminal, &cut, 0, half, all, "lambda 0.5, cut, terminal");
     // Targets are clipped, and it is the clipped one that is handed on.
     for (limit, sign) in [(0.5, 1.0_f32), (0.5, -1.0)] {
         let mut clipped = exact(1.0);
-        clipped.settings[0].target_limit = limit;
+        clipped.params[0].target_limit = limit;
         let tail = [-0.03125_f32, -0.0625, 0.125, 0.25, 0.5].map(|u| u * sign);
         // With a loss at the end: -0.5, -0.25, -0.125, -0.125 - 0.0625, half of that.
         let loss = [-0.09375, -0.1875, -0.125, -0.25, -0.5];
@@ -511,15 +511,15 @@ fn steps_that_are_no_policy_cut_the_chain() {
     let goal = five_steps(ENDED, 48.0);
     let but_last = [true, true, true, true, false];
     let mut bench = exact(1.0);
-    bench.settings[0].policy_threshold = 1.0e-5;
+    bench.params[0].policy_threshold = 1.0e-5;
     expect(&mut bench, &goal, 0, [-0.03125, -0.0625, 0.125, 0.25, 0.5], but_last, "lambda 1");
     let mut bench = exact(0.5);
-    bench.settings[0].policy_threshold = 1.0e-5;
+    bench.params[0].policy_threshold = 1.0e-5;
     expect(&mut bench, &goal, 0, [0.109375, -0.0625, 0.0625, 0.25, 0.5], but_last, "lambda 0.5");
     // A higher threshold also refuses step 2: child 4 at 0 beside child 2 at 0.1875, e^-3.75. Its best
     // value is 0.1875.
     let mut bench = exact(1.0);
-    bench.settings[0].policy_threshold = 0.03;
+    bench.params[0].policy_threshold = 0.03;
     let returns = [-0.015625, -0.03125, 0.1875, 0.25, 0.5];
     expect(&mut bench, &goal, 0, returns, [true, true, false, true, false], "threshold 0.03");
     // Taught steps count whatever their probability, if so configured, and only they do.
@@ -527,8 +527,8 @@ fn steps_that_are_no_policy_cut_the_chain() {
     let full = [-0.015625, -0.03125, 0.1875, 0.375, 0.75];
     for (taught, learned, returns) in [(1, all, full), (0, [true, true, false, true, false], returns)] {
         let mut bench = exact(1.0);
-        bench.settings[0].policy_threshold = 0.03;
-        bench.settings[0].taught_always = 1;
+        bench.params[0].policy_threshold = 0.03;
+        bench.params[0].taught_always = 1;
         expect(&mut bench, &goal, taught, returns, learned, "taught always");
     }
     // A masked child is not what the best value is about: without child 0 the best in front of the wall is 0.
@@ -547,12 +547,12 @@ fn returns_of_random_lessons_match_the_forward_view() {
         let lambda: f64 = [0.0, 0.3, 0.8, 0.95, 1.0][round % 5];
         let gamma: f64 = [0.9, 0.95, 1.0][round % 3];
         let mut bench = Bench::new(&["learning.optimiser=\"sgd\"", "learning.init=0.4"]);
-        let settings = &mut bench.settings[0];
-        (settings.rate, settings.beta1) = (HARDLY, 0.0);
-        (settings.lambda, settings.gamma) = (lambda as f32, gamma as f32);
-        (settings.target_limit, settings.policy_threshold, settings.sharpness_start) = (1.0e6, 0.05, 5.0);
-        (settings.taught_always, settings.timeout_terminal) = (0, u32::from(round % 7 == 0));
-        let terminal = settings.timeout_terminal == 1;
+        let params = &mut bench.params[0];
+        (params.rate, params.beta1) = (HARDLY, 0.0);
+        (params.lambda, params.gamma) = (lambda as f32, gamma as f32);
+        (params.target_limit, params.policy_threshold, params.inverse_temperature_start) = (1.0e6, 0.05, 5.0);
+        (params.taught_always, params.timeout_terminal) = (0, u32::from(round % 7 == 0));
+        let terminal = params.timeout_terminal == 1;
         let count = 1 + (next() * 30.0) as usize;
         let step = |next: &mut dyn FnMut() -> f64| Step {
             senses: made_up(&mut || next()),
@@ -599,7 +599,7 @@ fn returns_of_random_lessons_match_the_forward_view() {
         steps += count;
         cuts += usize::from(end == CUT && !terminal);
         refused += policy.iter().filter(|policy| !**policy).count();
-        assert_eq!(bench.cursor.updates as usize, policy.iter().filter(|policy| **policy).count());
+        assert_eq!(bench.state.updates as usize, policy.iter().filter(|policy| **policy).count());
     }
     assert!(steps > 3000 && cuts > 80 && refused > 100, "{steps} {cuts} {refused}");
 }
@@ -613,7 +613,7 @@ fn replayed_lessons_have_exponential_ages_cut_at_the_oldest() {
     {
         let set = [format!("learning.memory={memory}"), format!("learning.mean_age={mean:?}")];
         let mut bench = Bench::new(&[&set[0], &set[1]]);
-        bench.cursor.remembered = remembered;
+        bench.state.remembered = remembered;
         let stride = bench.shared.skills[0].lesson_stride;
         let kept = remembered.min(memory);
         let learner = bench.learner();
@@ -645,7 +645,7 @@ fn taught_lessons_are_distinct_one_from_each_stratum() {
     let stride = bench.shared.skills[0].lesson_stride;
     let mut counts = [0_u32; 25];
     for seed in 0..2000 {
-        bench.settings[0].learner_seed = seed;
+        bench.params[0].learner_seed = seed;
         let learner = bench.learner();
         for number in 0..10 {
             let word = taught_lesson(&learner, number) - 77;
@@ -712,7 +712,7 @@ fn children_are_chosen_as_often_as_the_softmax_says() {
 fn inverse_temperature_rises_linearly_and_stays() {
     let bench = Bench::new(&[]);
     for (trial, expected) in [(0, 20.0), (75, 70.0), (150, 120.0), (151, 120.0), (4_000_000_000, 120.0)] {
-        assert!((f64::from(sharpness(&bench.settings[0], trial)) - expected).abs() < 1.0e-4, "trial {trial}");
+        assert!((f64::from(inverse_temperature(&bench.params[0], trial)) - expected).abs() < 1.0e-4, "trial {trial}");
     }
 }
 
@@ -779,11 +779,11 @@ fn cohort() -> Cohort {
     groups[0].cohort(&plan, &learners)
 }
 
-fn run(cohort: &Cohort, threads: usize, quanta: u32, stops: &[Stop]) -> Cohort {
-    let mut backend = CpuBackend::new(threads, Some(quanta)).expect("threads");
+fn run(cohort: &Cohort, threads: usize, iterations: u32, stops: &[Stop]) -> Cohort {
+    let mut backend = CpuBackend::new(threads, Some(iterations)).expect("threads");
     backend.load(cohort.clone()).expect("memory");
     for stop in stops {
-        while !backend.advance(*stop).expect("the CPU advances").iter().all(|cursor| stop.holds(cursor)) {}
+        while !backend.advance(*stop).expect("the CPU advances").iter().all(|state| stop.holds(state)) {}
     }
     backend.memory().expect("memory").clone()
 }
@@ -795,32 +795,35 @@ fn bytes(cohort: &Cohort, learner: usize) -> Vec<u8> {
     let nets = &cohort.nets[learner * cohort.nets_stride..][..cohort.nets_stride];
     let lessons = &cohort.lessons[learner * cohort.lessons_stride..][..cohort.lessons_stride];
     let rows = &cohort.rows[learner * cohort.rows_stride..][..cohort.rows_stride];
-    let cursor = bytemuck::bytes_of(&cohort.cursors[learner]);
-    [cursor, bytemuck::cast_slice(nets), bytemuck::cast_slice(lessons), bytemuck::cast_slice(rows)].concat()
+    let state = bytemuck::bytes_of(&cohort.states[learner]);
+    [state, bytemuck::cast_slice(nets), bytemuck::cast_slice(lessons), bytemuck::cast_slice(rows)].concat()
 }
 
 #[test]
 fn interruptions_and_company_change_no_byte() {
     let start = cohort();
-    let learners = start.cursors.len();
+    let learners = start.states.len();
     assert_eq!(learners, 8);
     let whole = run(&start, 1, u32::MAX, &[DONE]);
-    assert!(whole.cursors.iter().all(|cursor| cursor.phase == PHASE_DONE && cursor.updates > 50));
+    assert!(whole.states.iter().all(|state| state.phase == PHASE_DONE && state.updates > 50));
     assert!((0..learners).all(|learner| bytes(&whole, learner) != bytes(&start, learner)));
     let points = [(0, 0), (0, 3), (1, 0), (1, 2)].map(|(skill, trial)| Stop { skill, trial });
     let stops = [points.as_slice(), &[DONE]].concat();
-    for (threads, quanta, stops) in [(1, 1, &[DONE][..]), (2, 7, &[DONE]), (2, 1000, &stops), (1, 3, &stops)] {
-        let parts = run(&start, threads, quanta, stops);
+    for (threads, iterations, stops) in [(1, 1, &[DONE][..]), (2, 7, &[DONE]), (2, 1000, &stops), (1, 3, &stops)] {
+        let parts = run(&start, threads, iterations, stops);
         for learner in 0..learners {
-            assert!(bytes(&parts, learner) == bytes(&whole, learner), "{quanta} quanta: learner {learner} differs");
+            assert!(
+                bytes(&parts, learner) == bytes(&whole, learner),
+                "{iterations} iterations: learner {learner} differs"
+            );
         }
     }
     // Alone, as among others.
     for learner in [0, 5] {
         let part = |words: &[f32], stride: usize| words[learner * stride..(learner + 1) * stride].to_vec();
         let alone = Cohort {
-            settings: start.settings[learner * start.skills..][..start.skills].to_vec(),
-            cursors: vec![start.cursors[learner]],
+            params: start.params[learner * start.skills..][..start.skills].to_vec(),
+            states: vec![start.states[learner]],
             nets: part(&start.nets, start.nets_stride),
             lessons: vec![0; start.lessons_stride],
             rows: vec![0; start.rows_stride],
@@ -834,8 +837,8 @@ fn interruptions_and_company_change_no_byte() {
 fn the_trial_table_adds_up() {
     let start = cohort();
     let done = run(&start, 2, 1000, &[DONE]);
-    for (learner, cursor) in done.cursors.iter().enumerate() {
-        let rows = &done.rows[learner * done.rows_stride..][..cursor.rows as usize * 8];
+    for (learner, state) in done.states.iter().enumerate() {
+        let rows = &done.rows[learner * done.rows_stride..][..state.rows as usize * 8];
         let mut actions = 0;
         let list: Vec<(u32, u32, u32)> = rows
             .chunks(8)
@@ -875,8 +878,8 @@ fn a_learner_whose_weights_stop_being_numbers_freezes_alone() {
         let word = learner * sick.nets_stride + net_of(&skill, 0, child) as usize + row * LANES;
         sick.nets[word] = poison;
         let after = run(&sick, 2, 1000, &[DONE]);
-        let cursor = &after.cursors[learner];
-        assert_eq!(cursor.phase, PHASE_FAILED, "learner {learner}: {poison} in row {row} of child {child}");
+        let state = &after.states[learner];
+        assert_eq!(state.phase, PHASE_FAILED, "learner {learner}: {poison} in row {row} of child {child}");
         for other in (0..8).filter(|other| *other != learner) {
             assert!(bytes(&after, other) == bytes(&clean, other), "learner {other} suffers from {learner}");
         }

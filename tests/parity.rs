@@ -5,26 +5,26 @@
 
 use bytemuck::Zeroable;
 use skilltree::backend::cpu::CpuBackend;
-use skilltree::backend::gpu::governor::quantum_turns;
-use skilltree::backend::gpu::held::holders;
+use skilltree::backend::gpu::dispatch_size::quantum_turns;
 use skilltree::backend::gpu::source::{ADVANCE, EVALUATE, Kernel, Part, STEP};
+use skilltree::backend::gpu::workgroup_weights::holders;
 use skilltree::backend::gpu::{GpuBackend, GpuOptions};
 use skilltree::backend::parity::{self, Difference, UNWRITTEN};
 use skilltree::backend::{Backend, Cohort, Stop, Test};
 use skilltree::cli::Failure;
 use skilltree::config::{Overrides, load};
-use skilltree::experiment::parity::{Sample, Work, train};
-use skilltree::experiment::senses::{SILENT, robot_at};
-use skilltree::learner::layout::{Cursor, Episode, LESSON_HEADER, RECORD_WORDS, Robot};
-use skilltree::learner::phase::{PHASE_DONE, PHASE_FAILED};
+use skilltree::layout::phase::{PHASE_DONE, PHASE_FAILED};
+use skilltree::layout::{Episode, LESSON_HEADER, LearnerState, RECORD_WORDS, Robot};
+use skilltree::train::observation::{SILENT, robot_at};
+use skilltree::train::parity::{Sample, Work, train};
 use skilltree::world::Pose;
 use std::mem::offset_of;
 use std::path::Path;
 use std::process::Command;
 use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
 
-/// Words of a cursor.
-const CURSOR_WORDS: usize = size_of::<Cursor>() / 4;
+/// Words of a state.
+const CURSOR_WORDS: usize = size_of::<LearnerState>() / 4;
 
 static GPU: LazyLock<Mutex<GpuBackend>> =
     LazyLock::new(|| Mutex::new(GpuBackend::new(&GpuOptions::default()).expect("an adapter, if only a software one")));
@@ -63,8 +63,8 @@ fn few(range: std::ops::Range<usize>) -> Cohort {
     let part = |stride: usize| range.start * stride..range.end * stride;
     Cohort {
         shared: all.shared.clone(),
-        settings: all.settings[part(all.skills)].to_vec(),
-        cursors: all.cursors[range.clone()].to_vec(),
+        params: all.params[part(all.skills)].to_vec(),
+        states: all.states[range.clone()].to_vec(),
         nets: all.nets[part(all.nets_stride)].to_vec(),
         lessons: all.lessons[part(all.lessons_stride)].to_vec(),
         rows: all.rows[part(all.rows_stride)].to_vec(),
@@ -78,21 +78,21 @@ fn shipped_kernels_leave_the_bytes_of_the_cpu() {
     let found = WORK.run(&mut *gpu()).expect("it runs");
     assert_eq!(expected.difference(&found), None);
     let (before, after) = (&WORK.cohorts()[0], &expected.cohorts()[0]);
-    assert!(after.cursors.iter().all(|cursor| cursor.phase == PHASE_DONE && cursor.updates > 50));
+    assert!(after.states.iter().all(|state| state.phase == PHASE_DONE && state.updates > 50));
     let differs = |a: &[u32], b: &[u32]| a != b;
     assert!(differs(&before.lessons, &after.lessons) && differs(&before.rows, &after.rows));
-    assert!(before.nets != after.nets && before.cursors != after.cursors);
+    assert!(before.nets != after.nets && before.states != after.states);
     assert!(expected.robots().iter().flatten().any(|robot| robot.events & 2 != 0), "nobody bumped into anything");
     assert!(expected.robots().iter().flatten().all(|robot| robot.events != UNWRITTEN));
     assert!(expected.bytes() > 1 << 20);
 
     // How often the learners are interrupted, and beside whom they train, changes nothing.
-    let cut = GpuOptions { quanta: Some(7), shard: Some(4), ..GpuOptions::default() };
+    let cut = GpuOptions { iterations: Some(7), shard: Some(4), ..GpuOptions::default() };
     let interrupted = WORK.run(&mut GpuBackend::new(&cut).expect("an adapter")).expect("it runs");
     assert_eq!(expected.difference(&interrupted), None);
     let single = train(few(3..4), &mut *gpu()).expect("it runs");
     let five = &FIVE.cohorts()[0];
-    assert_eq!(single.cohorts()[0].cursors[0], five.cursors[3]);
+    assert_eq!(single.cohorts()[0].states[0], five.states[3]);
     assert!(single.cohorts()[0].nets[..] == five.nets[3 * five.nets_stride..4 * five.nets_stride]);
 }
 
@@ -100,7 +100,7 @@ fn shipped_kernels_leave_the_bytes_of_the_cpu() {
 fn records(cohort: &Cohort, skill: usize) -> Vec<&[u32]> {
     let plan = &cohort.shared.skills[skill];
     let slots = cohort.lessons.chunks(cohort.lessons_stride).flat_map(|own| {
-        let memory = cohort.settings[skill].memory as usize * plan.lesson_stride as usize;
+        let memory = cohort.params[skill].memory as usize * plan.lesson_stride as usize;
         own[plan.memory_offset as usize..][..memory].chunks(plan.lesson_stride as usize)
     });
     slots.flat_map(|slot| slot[LESSON_HEADER..].chunks(RECORD_WORDS).take(slot[0] as usize + 1)).collect()
@@ -109,11 +109,11 @@ fn records(cohort: &Cohort, skill: usize) -> Vec<&[u32]> {
 #[test]
 fn trees_of_skills_leave_the_bytes_of_the_cpu() {
     assert_eq!(GROWN.difference(&TREE.run(&mut *gpu()).expect("it runs")), None);
-    let cut = GpuOptions { quanta: Some(5), shard: Some(3), ..GpuOptions::default() };
+    let cut = GpuOptions { iterations: Some(5), shard: Some(3), ..GpuOptions::default() };
     let interrupted = train(TREE.cohorts()[0].clone(), &mut GpuBackend::new(&cut).expect("an adapter"));
     let (interrupted, after) = (interrupted.expect("it runs"), &GROWN.cohorts()[0]);
     assert_eq!(parity::advance(after, &interrupted.cohorts()[0]), None);
-    assert!(after.cursors.iter().all(|cursor| cursor.phase == PHASE_DONE));
+    assert!(after.states.iter().all(|state| state.phase == PHASE_DONE));
 
     // The work reached what it is there for.
     let skills = &after.shared.skills;
@@ -147,9 +147,9 @@ fn counting(kernel: Kernel) -> Kernel {
             if line.trim_start().starts_with("for (") { format!("{TURN}{line}\n{TURN}") } else { format!("{line}\n") }
         };
         let mut text: String = part.text.lines().map(line).collect();
-        if part.path == "advance.wgsl" {
-            let from = "cursors[learner] = cursor;";
-            let to = "cursor.updates = max(cursors[learner].updates, turned);";
+        if part.path == "kernels/train.wgsl" {
+            let from = "states[learner] = state;";
+            let to = "state.updates = max(states[learner].updates, turned);";
             text = text.replace(from, &format!("{to}\n{from}")) + "var<private> turned: u32;\n";
         }
         Part { path: part.path, text: text.leak() }
@@ -160,17 +160,17 @@ fn counting(kernel: Kernel) -> Kernel {
 #[test]
 fn no_quantum_takes_more_turns_than_the_governor_counts() {
     let _alone = gpu();
-    let single = GpuOptions { quanta: Some(1), ..GpuOptions::default() };
+    let single = GpuOptions { iterations: Some(1), ..GpuOptions::default() };
     let mut gpu = GpuBackend::new(&single).expect("an adapter");
     gpu.replace(counting(ADVANCE));
     let stop = Stop { skill: u32::MAX, trial: u32::MAX };
     let mut most = |cohort: &Cohort| {
         gpu.load(cohort.clone()).expect("it fits");
-        while !gpu.advance(stop).expect("it runs").iter().all(|cursor| stop.holds(cursor)) {}
-        let cursors = gpu.advance(stop).expect("it runs");
-        (cursors.iter().map(|cursor| cursor.updates).max().expect("learners"), gpu.held())
+        while !gpu.advance(stop).expect("it runs").iter().all(|state| stop.holds(state)) {}
+        let states = gpu.advance(stop).expect("it runs");
+        (states.iter().map(|state| state.updates).max().expect("learners"), gpu.held())
     };
-    // Nets of 16 units lie in workgroup memory while they are replayed: that makes the dearest quantum.
+    // Nets of 16 units lie in workgroup memory while they are replayed: that makes the dearest iteration.
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/docking.toml");
     let set = vec!["learning.hidden=16".to_owned()];
     let lean = load(&path, &Overrides { set, ..Overrides::default() }).expect("the config is good");
@@ -226,21 +226,21 @@ fn faults_of_advance_are_named() {
             // One last place in one lane.
             (
                 "qnet/forward.wgsl",
-                "activation = squash(sum);",
-                "activation = squash(sum);
+                "activation = tanh(sum);",
+                "activation = tanh(sum);
                 if lane == 5u && base == 2u * dispatch.nets_stride {
                     activation = bitcast<f32>(bitcast<u32>(activation) + 1u);
                 }",
             ),
             // A word that is never written: zeroes would hide it.
             (
-                "lesson/record.wgsl",
+                "learn/lesson.wgsl",
                 "rows[at + 7u] = taught;",
                 "if rows_base != dispatch.rows_stride { rows[at + 7u] = taught; }",
             ),
             // Two learners that swap their memory.
             (
-                "advance.wgsl",
+                "kernels/train.wgsl",
                 "rows_base = learner * dispatch.rows_stride;",
                 "rows_base = select(learner, 7u - learner, learner >= 3u) * dispatch.rows_stride;",
             ),
@@ -252,7 +252,7 @@ fn faults_of_advance_are_named() {
         if let Some(learner) = healed {
             let part = |stride: usize| learner * stride..(learner + 1) * stride;
             let (nets, lessons, rows) = (part(found.nets_stride), part(found.lessons_stride), part(found.rows_stride));
-            found.cursors[learner] = expected.cursors[learner];
+            found.states[learner] = expected.states[learner];
             found.nets[nets.clone()].copy_from_slice(&expected.nets[nets]);
             found.lessons[lessons.clone()].copy_from_slice(&expected.lessons[lessons]);
             found.rows[rows.clone()].copy_from_slice(&expected.rows[rows]);
@@ -266,7 +266,7 @@ fn faults_of_advance_are_named() {
     assert_eq!((all[0].field.as_str(), all[0].right), ("rows word 7 (row 0, taught)", UNWRITTEN));
     let says = all[1].to_string();
     assert!(all[1].finite && all[1].left != all[1].right, "{says}");
-    assert!(["learner 2: cursor ", "learner 2: nets word "].iter().any(|field| says.contains(field)), "{says}");
+    assert!(["learner 2: state ", "learner 2: nets word "].iter().any(|field| says.contains(field)), "{says}");
     assert!(all[2..].iter().all(|found| found.field.starts_with("rows word ")), "{all:?}");
 }
 
@@ -277,16 +277,20 @@ fn faults_of_evaluate_are_named() {
         EVALUATE,
         &[
             (
-                "evaluate.wgsl",
+                "kernels/evaluate.wgsl",
                 "execute(lane, s, action);",
                 "execute(lane, s, action);
                 if lane == 0u && learner == 2u && number == 5u && agent.step == 1u {
                     agent.x = bitcast<f32>(bitcast<u32>(agent.x) + 1u);
                 }",
             ),
-            ("evaluate.wgsl", "episode.start_y = pose.y;", "if s != dispatch.skills { episode.start_y = pose.y; }"),
             (
-                "evaluate.wgsl",
+                "kernels/evaluate.wgsl",
+                "episode.start_y = pose.y;",
+                "if s != dispatch.skills { episode.start_y = pose.y; }",
+            ),
+            (
+                "kernels/evaluate.wgsl",
                 "let base = learner * dispatch.nets_stride;",
                 "let base = select(learner, 7u - learner, learner >= 3u) * dispatch.nets_stride;",
             ),
@@ -317,7 +321,7 @@ fn one_last_place_in_one_ray_of_the_sonar_is_named() {
     let kernel = broken(
         STEP,
         &[(
-            "skill/observe.wgsl",
+            "env/observe.wgsl",
             "reading(range, error)",
             "reading(select(range, bitcast<f32>(bitcast<u32>(range) + 1u), lane == 0u), error)",
         )],
@@ -377,14 +381,14 @@ fn differences_are_named_in_order() {
         says(&other, &format!("nets word {word} (skill 0, {text})"));
     }
     for (offset, text) in [
-        (offset_of!(Cursor, agent.run) + 8, "cursor agent.run 2"),
-        (offset_of!(Cursor, agent.heading), "cursor agent.heading"),
-        (offset_of!(Cursor, updates), "cursor updates"),
+        (offset_of!(LearnerState, agent.run) + 8, "state agent.run 2"),
+        (offset_of!(LearnerState, agent.heading), "state agent.heading"),
+        (offset_of!(LearnerState, updates), "state updates"),
     ] {
-        flip(bytemuck::cast_slice_mut(&mut other.cursors), 3 * CURSOR_WORDS + offset / 4);
+        flip(bytemuck::cast_slice_mut(&mut other.states), 3 * CURSOR_WORDS + offset / 4);
         says(&other, text);
     }
-    other.cursors.truncate(3);
+    other.states.truncate(3);
     let found = parity::advance(&cohort, &other).expect("a difference");
     assert_eq!((found.field.as_str(), found.left, found.right), ("number of learners", 5, 3));
 }
@@ -446,7 +450,7 @@ fn a_number_that_is_not_finite_is_a_difference_on_both_sides_too() {
                 0x7fc00000 against 0x7fc00000, not finite";
     assert_eq!(found.to_string(), says);
     // A learner that has failed may hold anything, but the same on both sides.
-    cohort.cursors[1].phase = PHASE_FAILED;
+    cohort.states[1].phase = PHASE_FAILED;
     assert_eq!(parity::advance(&cohort, &cohort), None);
     let mut other = cohort.clone();
     other.nets[word] = f32::INFINITY;

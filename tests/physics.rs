@@ -8,17 +8,17 @@ use skilltree::backend::Backend;
 use skilltree::backend::cpu::CpuBackend;
 use skilltree::backend::parity::{self, UNWRITTEN};
 use skilltree::config::plan::{Noise, NoiseKind};
-use skilltree::experiment::senses::{SILENT, Senses, floor_only, robot_at};
-use skilltree::learner::layout::{BASE_WORDS, RAYS, Robot};
-use skilltree::learner::memory::Shared;
+use skilltree::env::contact::{bumpers, sweep};
+use skilltree::env::events::{passed_door, room_of};
+use skilltree::env::light::in_sight;
+use skilltree::env::motion::{BACKWARD, COLLISION, DOCKED, FORWARD, Moved, NO_ACTION, PASSED_DOOR, move_body};
+use skilltree::env::segments::{LISTED_TRAVEL, SegmentGrid};
+use skilltree::env::sonar::{ranges, rays};
+use skilltree::env::workgroup::CohortData;
+use skilltree::layout::{BASE_WORDS, RAYS, Robot};
 use skilltree::math::functions::sin_cos;
 use skilltree::math::rng::place_of;
-use skilltree::robot::collide::{bumpers, sweep};
-use skilltree::robot::floor::{Floor, LISTED_TRAVEL};
-use skilltree::robot::light::in_sight;
-use skilltree::robot::motion::{BACKWARD, COLLISION, DOCKED, FORWARD, Moved, NO_ACTION, PASSED_DOOR, move_body};
-use skilltree::robot::sonar::{ranges, rays};
-use skilltree::skill::reward::{passed_door, room_of};
+use skilltree::train::observation::{SILENT, Senses, floor_only, robot_at};
 use skilltree::world::{Pose, World};
 
 /// What the brief allows between f32 and exact geometry, inches.
@@ -31,7 +31,7 @@ struct Place {
     world: World,
     field: Field,
     written: Written,
-    shared: Shared,
+    shared: CohortData,
 }
 
 impl Place {
@@ -130,7 +130,7 @@ fn cpu() -> CpuBackend {
 }
 
 /// What a robot without noise senses, through the shipped kernel.
-fn sense(shared: &Shared, poses: &[Pose]) -> Vec<Senses> {
+fn sense(shared: &CohortData, poses: &[Pose]) -> Vec<Senses> {
     let mut robots: Vec<Robot> = poses.iter().map(|pose| robot_at(*pose, &SILENT, 1, 2)).collect();
     cpu().step(shared, &mut robots, 1).expect("the CPU steps");
     robots.iter().map(Senses::of).collect()
@@ -213,13 +213,13 @@ fn sonar_is_exact_in_whole_inches_along_the_axes() {
 }
 
 /// A floor whose cells list all segments.
-fn unculled(place: &Place) -> Floor {
+fn unculled(place: &Place) -> SegmentGrid {
     let mut plan = place.shared.floor.plan;
     let cells = plan.cell_columns * plan.cell_rows;
     let starts = (0..=cells).map(|cell| cells + 1 + cell * plan.segments);
-    let atlas: Vec<u32> = starts.chain((0..cells).flat_map(|_| 0..plan.segments)).collect();
+    let tables: Vec<u32> = starts.chain((0..cells).flat_map(|_| 0..plan.segments)).collect();
     (plan.cell_starts, plan.sight_starts) = (0, 0);
-    Floor::new(&plan, &atlas)
+    SegmentGrid::new(&plan, &tables)
 }
 
 #[test]

@@ -1,9 +1,9 @@
 //! Run folders: what is written comes back, and nothing that is cut, altered or foreign is taken for a result.
 
-use skilltree::record::places::{read_places, write_places};
-use skilltree::record::tables::{read_evaluations, read_trials, write_evaluations, write_trials};
-use skilltree::record::weights::{read_weights, write_weights};
-use skilltree::record::{
+use skilltree::run_folder::sensor_readings::{read_places, write_places};
+use skilltree::run_folder::tables::{read_evaluations, read_trials, write_evaluations, write_trials};
+use skilltree::run_folder::weights::{read_weights, write_weights};
+use skilltree::run_folder::{
     EvaluationRow, FORMAT, FinishedRun, Manifest, Names, NetWeights, PlaceReading, Provenance, RecordError, RunFolder,
     SkillWeights, State, TrialRow,
 };

@@ -7,7 +7,7 @@ use naga::{
 };
 use skilltree::backend::gpu::source::{KERNELS, Part};
 use skilltree::backend::gpu::spirv::{Checked, check};
-use skilltree::learner::layout::{LANES, LAYOUTS};
+use skilltree::layout::{LANES, LAYOUTS};
 use std::collections::BTreeSet;
 use std::path::Path;
 

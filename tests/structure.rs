@@ -1,6 +1,6 @@
 //! The two rules that keep the code in shape: twins, and one direction.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 fn root() -> PathBuf {
@@ -73,22 +73,22 @@ fn purpose(text: &str) -> String {
 /// Comments of one twin alone: on workgroups, which Rust does not have, and on Rust's compiler.
 const OWN_COMMENTS: &[(&str, &str)] = &[
     (
-        "evaluate.wgsl",
+        "kernels/evaluate.wgsl",
         "// Results stand by the place of the learner in this dispatch: a test is read back part by part.",
     ),
     ("qnet/backward.wgsl", "// A lane without a hidden unit has no rows."),
     ("qnet/forward.wgsl", "// The last one stands in for who is missing beside it."),
     (
-        "skill/observe.wgsl",
-        "// Behind `black_box` the compiler does not keep the keys of `roll` in memory on every step for this one.",
+        "env/observe.wgsl",
+        "// Behind `black_box` the compiler does not keep the keys of `draw_step` in memory on every step for this one.",
     ),
 ];
 
 /// Functions of a Rust twin alone, and why.
 const OWN_FUNCTIONS: &[(&str, &str)] = &[
     // Lanes that meet in memory have no sum by value.
-    ("math/lanes.wgsl", "lanes_sum"),
-    ("math/lanes.wgsl", "folded"),
+    ("math/reduce.wgsl", "lanes_sum"),
+    ("math/reduce.wgsl", "folded"),
     // A lane has one unit's sum and weights.
     ("qnet/forward.wgsl", "added"),
     ("qnet/forward.wgsl", "bits_of"),
@@ -99,24 +99,24 @@ const OWN_FUNCTIONS: &[(&str, &str)] = &[
     ("math/rng.wgsl", "draws"),
     ("math/rng.wgsl", "place_of"),
     // A lane looks at its own bit.
-    ("skill/encode.wgsl", "shown"),
+    ("policy/features.wgsl", "shown"),
     // They are made when the program is compiled; a lane turns its own ray and sets its own bit.
-    ("robot/sonar.wgsl", "ray_table"),
-    ("skill/observe.wgsl", "bits"),
+    ("env/sonar.wgsl", "ray_table"),
+    ("env/observe.wgsl", "bits"),
     // A workgroup has one robot.
-    ("step.wgsl", "turn"),
-    ("step.wgsl", "terms_of"),
-    ("step.wgsl", "stream_of"),
+    ("kernels/step.wgsl", "turn"),
+    ("kernels/step.wgsl", "terms_of"),
+    ("kernels/step.wgsl", "stream_of"),
     // A workgroup's lanes write their words themselves.
-    ("skill/observe.wgsl", "packed"),
+    ("env/observe.wgsl", "packed"),
 ];
 
 /// Functions of a shader alone, and why.
 const SHADER_FUNCTIONS: &[(&str, &[&str])] = &[
     // Weights in replay lie in a workgroup's own memory; the CPU's cache is that of the nets' copy (`Desk`).
-    ("advance.wgsl", &["weights_of", "stride_of", "weight", "put_weight", "hold", "let_go"]),
+    ("kernels/train.wgsl", &["weights_of", "stride_of", "weight", "put_weight", "hold", "let_go"]),
     // The same functions serve tests, where all nets lie in storage.
-    ("evaluate.wgsl", &["weights_of", "stride_of", "weight"]),
+    ("kernels/evaluate.wgsl", &["weights_of", "stride_of", "weight"]),
 ];
 
 #[test]
@@ -159,13 +159,14 @@ fn every_shader_has_its_twin() {
 /// Rust files beside the twins that have no shader, and why.
 const WITHOUT_SHADER: &[(&str, &str)] = &[
     ("qnet/init.rs", "initial weights are made once, on the host, for both backends"),
-    ("robot/floor.rs", "the CPU wants the segments as arrays; the GPU reads the plan"),
+    ("env/workgroup.rs", "a workgroup's memory is declared beside the functions that use it"),
+    ("env/segments.rs", "the CPU wants the segments as arrays; the GPU reads the plan"),
 ];
 
 #[test]
 fn nothing_but_twins_stands_among_the_kernels() {
     let shaders: BTreeSet<String> = files(&root().join("shaders"), ".wgsl").into_iter().collect();
-    for folder in ["math", "robot", "skill", "qnet", "lesson"] {
+    for folder in ["math", "env", "policy", "qnet", "learn", "kernels"] {
         for file in files(&root().join("src").join(folder), ".rs") {
             let path = format!("{folder}/{file}");
             let listed = WITHOUT_SHADER.iter().any(|(listed, _)| *listed == path);
@@ -175,38 +176,6 @@ fn nothing_but_twins_stands_among_the_kernels() {
     }
 }
 
-/// Each part of the house and what it may use. `learner` is the shared layout of memory: world and config read
-/// its sizes from it. `record` keeps a sweep in the config's words. Experiments hand their results to `record`; reports read run folders only.
-const DIRECTION: &[(&str, &[&str])] = &[
-    ("config", &["world", "learner", "math"]),
-    ("world", &["config", "learner"]),
-    ("math", &["learner"]),
-    ("learner", &["config", "world", "math", "robot", "skill", "qnet"]),
-    ("robot", &["learner", "math"]),
-    ("skill", &["learner", "math", "robot", "qnet", "world"]),
-    ("qnet", &["learner", "math"]),
-    ("lesson", &["learner", "math", "skill", "qnet"]),
-    ("advance", KERNELS),
-    ("evaluate", KERNELS),
-    ("step", KERNELS),
-    ("teacher", &["config", "world", "learner", "math", "robot", "skill", "lesson"]),
-    ("backend", &["learner", "math", "robot", "skill", "qnet", "lesson", "advance", "evaluate", "step"]),
-    ("record", &["config"]),
-    (
-        "experiment",
-        &[
-            "config", "world", "learner", "math", "robot", "skill", "qnet", "lesson", "evaluate", "teacher", "backend",
-            "record",
-        ],
-    ),
-    ("report", &["config", "world", "math", "record"]),
-    ("bench", &["config", "world", "learner", "math", "robot", "skill", "qnet", "lesson", "backend", "experiment"]),
-    ("cli", &["config", "world", "learner", "robot", "backend", "experiment", "record", "report", "bench"]),
-    ("lib", &[]),
-    ("main", &["cli"]),
-];
-const KERNELS: &[&str] = &["learner", "math", "robot", "skill", "qnet", "lesson"];
-
 /// Parts that a text names as `crate::part`.
 fn uses(text: &str) -> BTreeSet<String> {
     let code = text.lines().filter(|line| !line.trim_start().starts_with("//"));
@@ -215,23 +184,36 @@ fn uses(text: &str) -> BTreeSet<String> {
     names.filter(|name| !name.is_empty()).map(str::to_owned).collect()
 }
 
-#[test]
-fn nothing_reaches_back() {
-    for file in files(&root().join("src"), ".rs") {
-        let part = file.split('/').next().unwrap_or_default().trim_end_matches(".rs").to_owned();
-        let allowed = DIRECTION.iter().find(|(name, _)| *name == part);
-        let allowed = allowed.unwrap_or_else(|| panic!("src/{file}: give `{part}` its place in DIRECTION")).1;
-        for used in uses(shipped(&read(&root().join("src").join(&file)))) {
-            assert!(used == part || allowed.contains(&used.as_str()), "src/{file} uses crate::{used}");
+/// A node of `uses` that uses itself, by way of others: what is left once all that uses nothing has been taken away.
+fn circle(mut uses: BTreeMap<String, BTreeSet<String>>) -> Vec<String> {
+    while let Some(free) = uses.iter().find(|(_, uses)| uses.is_empty()).map(|(name, _)| name.clone()) {
+        uses.remove(&free);
+        for others in uses.values_mut() {
+            others.remove(&free);
         }
     }
+    uses.into_keys().collect()
+}
+
+#[test]
+fn modules_have_one_order() {
+    let mut imports: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    for file in files(&root().join("src"), ".rs").into_iter().filter(|file| file.contains('/')) {
+        let module = file.split('/').next().unwrap_or_default().to_owned();
+        let mut used = uses(shipped(&read(&root().join("src").join(&file))));
+        used.remove(&module);
+        imports.entry(module).or_default().extend(used);
+    }
+    assert_eq!(circle(imports.clone()), [""; 0]);
+    imports.get_mut("layout").expect("the ground floor").insert("cli".to_owned());
+    assert!(circle(imports).contains(&"backend".to_owned()), "a use of `cli` by `layout` closes circles");
 }
 
 /// Where no Vulkan is installed, everything but the GPU backend must work.
 #[test]
 fn only_the_gpu_backend_knows_wgpu() {
     for file in files(&root().join("src"), ".rs") {
-        let gpu = file == "backend/gpu.rs" || file.starts_with("backend/gpu/") || file == "cli/devices.rs";
+        let gpu = file.starts_with("backend/gpu/") || file == "cli/devices.rs";
         let text = read(&root().join("src").join(&file));
         let code = text.lines().filter(|line| !line.trim_start().starts_with("//"));
         let named = code.filter(|line| line.contains("wgpu") || line.contains("naga")).count();
@@ -251,10 +233,10 @@ const READ_BY_THEMSELVES: &[&str] = &[
     "bench/mod.rs",
     "bench/run.rs",
     "bench/workload.rs",
-    "record/disk.rs",
+    "run_folder/file_system.rs",
 ];
 
-/// Tests make each call on a disk fail: one that bypasses `record::disk` would escape them.
+/// Tests make each call on a disk fail: one that bypasses `run_folder::file_system` would escape them.
 #[test]
 fn run_folders_are_reached_through_the_disk_alone() {
     let calls = ["fs::", "File::", ".exists()", ".is_file()", ".is_dir()", ".try_exists()", "read_dir("];

@@ -4,8 +4,8 @@ mod support;
 
 use skilltree::backend::cpu::CpuBackend;
 use skilltree::backend::{Backend, BackendError};
-use skilltree::record::sweep::{self, AxisValue, read_sweep};
-use skilltree::record::tables::{EVALUATIONS, TRIALS, read_evaluations, read_trials};
+use skilltree::run_folder::sweep::{self, AxisValue, read_sweep};
+use skilltree::run_folder::tables::{EVALUATIONS, TRIALS, read_evaluations, read_trials};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
@@ -144,7 +144,7 @@ fn a_learner_alone_is_the_learner_in_the_sweep() {
     assert_eq!(sweep.points, points);
     // The tables mean the same points: the number of trials shows it.
     let (names, trials) = read_trials(&all.join(TRIALS)).expect("trials");
-    let place = |row: &skilltree::record::TrialRow| (row.arm, row.point, row.seed);
+    let place = |row: &skilltree::run_folder::TrialRow| (row.arm, row.point, row.seed);
     assert!(trials.is_sorted_by_key(place), "rows are sorted by arm, point and seed");
     assert_eq!(names.arms, ["taught-adam", "untaught-sgd"]);
     for point in 0..4 {
@@ -176,7 +176,7 @@ fn no_split_and_no_order_changes_a_byte() {
         assert!(expected.contains_key(sweep::FILE) && expected.keys().any(|name| name.starts_with("skills/")));
         for (number, way) in [
             &["--cohort", "1", "--threads", "1"][..],
-            &["--cohort", "3", "--quanta", "37"],
+            &["--cohort", "3", "--iterations", "37"],
             &["--cohort", "100", "--threads", "3"],
         ]
         .iter()

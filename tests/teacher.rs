@@ -5,15 +5,15 @@ use skilltree::backend::Backend;
 use skilltree::backend::cpu::CpuBackend;
 use skilltree::config::plan::{Action, Child, Noise, NoiseKind, Plan, Robot as Habits, Skill};
 use skilltree::config::{Overrides, load};
-use skilltree::experiment::group::{Group, groups};
-use skilltree::experiment::senses::{SILENT, Senses, floor_only, robot_at};
-use skilltree::learner::layout::{BASE_WORDS, LESSON_HEADER, Robot};
-use skilltree::learner::memory::Shared;
-use skilltree::lesson::record::ENDED;
-use skilltree::robot::motion::{BESIDE_LEFT, BESIDE_RIGHT, COLLISION, DOCKED, FORWARD, PASSED_DOOR, move_body};
-use skilltree::skill::reward::passed_door;
-use skilltree::teacher::bank::Demonstration;
-use skilltree::teacher::planner::{Planner, Terms};
+use skilltree::env::events::passed_door;
+use skilltree::env::motion::{BESIDE_LEFT, BESIDE_RIGHT, COLLISION, DOCKED, FORWARD, PASSED_DOOR, move_body};
+use skilltree::env::workgroup::CohortData;
+use skilltree::layout::{BASE_WORDS, LESSON_HEADER, Robot};
+use skilltree::learn::lesson::ENDED;
+use skilltree::teacher::demonstrations::Demonstration;
+use skilltree::teacher::value_iteration::{Planner, Terms};
+use skilltree::train::batch_group::{Group, groups};
+use skilltree::train::observation::{SILENT, Senses, floor_only, robot_at};
 use skilltree::world::{Pose, World, parse};
 use std::collections::VecDeque;
 use std::fmt::Write;
@@ -131,7 +131,7 @@ fn close(found: f32, expected: f64, what: impl Fn() -> String) {
 }
 
 /// Checks a planner against the shortest paths: values on grid poses and between them, and every choice.
-fn check_paths(planner: &Planner, floor: &Shared, children: &[Action], found: &[(State, u32)], quarters: u32) {
+fn check_paths(planner: &Planner, floor: &CohortData, children: &[Action], found: &[(State, u32)], quarters: u32) {
     let worth = |distance: u32| 100.0 * f64::from(DISCOUNT).powi(distance as i32 - 1);
     let distance = |state: State| found.iter().find(|(known, _)| *known == state).map(|(_, distance)| *distance);
     let inches = |place: i32| f64::from(place * MOVE);
@@ -352,7 +352,7 @@ fn the_planner_passes_doors_in_the_office_too() {
 /// Number of the room that holds a pose.
 fn plan_room(group: &Group, pose: Pose) -> u32 {
     let plan = &group.shared.floor.plan;
-    let inside = |area: &&skilltree::learner::layout::Area| {
+    let inside = |area: &&skilltree::layout::Area| {
         area.x0 <= pose.x && pose.x < area.x1 && area.y0 <= pose.y && pose.y < area.y1
     };
     let rooms = &plan.room[..plan.rooms as usize];
@@ -360,7 +360,7 @@ fn plan_room(group: &Group, pose: Pose) -> u32 {
 }
 
 /// Events that the readings after an action tell of: the nearest one 30 to 150 degrees to a side is 15 to 30 inches.
-fn beside(senses: &Senses, action: u32, events: u32) -> u32 {
+fn following_wall(senses: &Senses, action: u32, events: u32) -> u32 {
     let near = |rays: std::ops::RangeInclusive<usize>| {
         let nearest = senses.sonar[rays].iter().min().copied().unwrap_or(0);
         action == FORWARD && events & (COLLISION | DOCKED) == 0 && (15..=30).contains(&nearest)
@@ -395,7 +395,7 @@ fn lessons_without_noise_can_be_driven_again() {
                 let passed = passed_door(&floor.plan, origin, moved.x, moved.y);
                 pose = Pose { x: moved.x, y: moved.y, heading: moved.heading };
                 origin = if passed == 0 { origin } else { room(pose) };
-                let events = moved.events | passed | beside(&sense(step + 1), action, moved.events);
+                let events = moved.events | passed | following_wall(&sense(step + 1), action, moved.events);
                 assert_eq!(word >> 24 & 0x7f, events, "step {step}");
                 hits += u32::from(events & COLLISION != 0);
                 walls += u32::from(events & (BESIDE_LEFT | BESIDE_RIGHT) != 0);

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, Vec2};
 use skilltree::config::{ConfigError, Place};
-use skilltree::world::atlas::{Atlas, LIST_CELL};
+use skilltree::world::tables::{LIST_CELL, Tables};
 use skilltree::world::{Segment, World, load, parse};
 use std::path::{Path, PathBuf};
 
@@ -152,12 +152,12 @@ fn met(from: DVec2, way: DVec2, segment: &Segment) -> Option<f64> {
 fn lists_hold_whatever_a_robot_can_hear() {
     for name in OFFICES {
         let world = office(name);
-        let atlas = Atlas::new(&world);
-        let plan = &atlas.plan;
+        let tables = Tables::new(&world);
+        let plan = &tables.plan;
         assert_eq!((plan.cell_columns, plan.cell_rows), (30, 35));
         let list = |cell: u32| {
             let at = (plan.cell_starts + cell) as usize;
-            &atlas.words[atlas.words[at] as usize..atlas.words[at + 1] as usize]
+            &tables.words[tables.words[at] as usize..tables.words[at + 1] as usize]
         };
         let mut next = stream(13);
         let (mut left_out, mut heard) = (0, 0);
@@ -192,8 +192,8 @@ fn lists_hold_whatever_a_robot_can_hear() {
 #[test]
 fn the_plan_repeats_the_world() {
     let world = office("office");
-    let mut atlas = Atlas::new(&world);
-    let plan = atlas.plan;
+    let mut tables = Tables::new(&world);
+    let plan = tables.plan;
     assert_eq!((plan.segments as usize, plan.rooms, plan.doors, plan.lit), (world.segments.len(), 3, 2, 1));
     assert_eq!((plan.light_x, plan.light_y, plan.light_range2), (12.0, 12.0, 52_900.0));
     assert_eq!(plan.dock_cosine, (30.0_f64.to_radians().cos()) as f32);
@@ -207,10 +207,10 @@ fn the_plan_repeats_the_world() {
         assert!((segment.tx.hypot(segment.ty) - 1.0).abs() < 1e-6);
         assert!((segment.length - written.a.distance(written.b)).abs() < 1e-4);
     }
-    let before = atlas.words.len();
-    assert_eq!(atlas.add_cells(&[5, 6]), (before as u32, 2));
-    assert_eq!(atlas.add_table(&[0.5]), before as u32 + 2);
-    assert_eq!(atlas.words[before..], [5, 6, 0.5_f32.to_bits()]);
+    let before = tables.words.len();
+    assert_eq!(tables.add_cells(&[5, 6]), (before as u32, 2));
+    assert_eq!(tables.add_table(&[0.5]), before as u32 + 2);
+    assert_eq!(tables.words[before..], [5, 6, 0.5_f32.to_bits()]);
 }
 
 #[test]

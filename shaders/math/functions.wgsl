@@ -72,7 +72,7 @@ fn is_number(x: f32) -> bool {
     return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
 }
 
-fn squash(x: f32) -> f32 {
+fn tanh(x: f32) -> f32 {
     // Beyond, tanh is 1 to f32's last place but one.
     let held = select(-7.9f, x, x > -7.9f);
     let b = select(7.9f, held, held < 7.9f);

@@ -43,17 +43,17 @@ fn draw(stream: Stream, draw: u32) -> vec4<u32> {
 
 // The random words of one primitive step: entry `i` holds draw number `i`. Rays share the first six draws, a word
 // each, and so do the light's bearings theirs. The rest is named in `skill/observe`.
-var<workgroup> dice: array<vec4<u32>, LANES>;
+var<workgroup> random: array<vec4<u32>, LANES>;
 
-fn roll(lane: u32, stream: Stream) {
+fn draw_step(lane: u32, stream: Stream) {
     workgroupBarrier();
-    dice[lane] = draw(stream, lane);
+    random[lane] = draw(stream, lane);
     workgroupBarrier();
 }
 
 // The word of bearing `b`, whose six draws begin with number `first`: word `b` / 6 of draw `b` % 6.
 fn bearing_words(first: u32, b: u32) -> u32 {
-    return dice[first + b % 6u][b / 6u];
+    return random[first + b % 6u][b / 6u];
 }
 
 fn unit(word: u32) -> f32 {

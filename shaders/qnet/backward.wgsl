@@ -61,11 +61,11 @@ fn paces(
     partials[0][lane] = errors.hidden * errors.hidden;
     partials[1][lane] = own_activation * own_activation;
     lanes_sums(lane, 2u, units);
-    let hidden_share = partials[0][0] * settings[s].unit_share;
-    let activation = partials[1][0] * settings[s].unit_share;
+    let hidden_share = partials[0][0] * params[s].unit_share;
+    let activation = partials[1][0] * params[s].unit_share;
     let count = skills[skill].inputs;
     let last = count + 1u + skills[skill].outputs;
-    let rest2 = 1.0f - settings[s].beta2;
+    let rest2 = 1.0f - params[s].beta2;
     let squares = net + 2u * skills[skill].rows * LANES;
     // Blocks of rows, as many as there are.
     for (var block = 0u; block <= last; block += LANES) {
@@ -76,17 +76,17 @@ fn paces(
         let factor = select(out, x, row <= count);
         let above = select(1.0f, activation, row < last);
         let alike = select(above, hidden_share, row <= count);
-        let square = flush(settings[s].beta2 * nets[squares + row] + rest2 * (factor * factor * alike));
+        let square = flush(params[s].beta2 * nets[squares + row] + rest2 * (factor * factor * alike));
         nets[squares + row] = square;
         row_factor[row] = factor;
-        row_pace[row] = rate * reciprocal_sqrt(square + settings[s].epsilon2);
+        row_pace[row] = rate * reciprocal_sqrt(square + params[s].epsilon2);
     }
     workgroupBarrier();
 }
 
 fn learning_rate(s: u32, trial: u32) -> f32 {
-    let risen = select(settings[s].rate_trials, trial, trial < settings[s].rate_trials);
-    return settings[s].rate * (1.0f - settings[s].rate_fall * f32(risen));
+    let risen = select(params[s].rate_trials, trial, trial < params[s].rate_trials);
+    return params[s].rate * (1.0f - params[s].rate_fall * f32(risen));
 }
 
 fn learn(
@@ -106,10 +106,10 @@ fn learn(
     let slab = skills[skill].rows * LANES;
     // A lane without a hidden unit has no rows.
     let rows = select(0u, skills[skill].rows, lane < units);
-    let beta1 = settings[s].beta1;
-    let beta2 = settings[s].beta2;
-    let epsilon2 = settings[s].epsilon2;
-    if settings[s].optimiser == OPTIMISER_SGD {
+    let beta1 = params[s].beta1;
+    let beta2 = params[s].beta2;
+    let epsilon2 = params[s].epsilon2;
+    if params[s].optimiser == OPTIMISER_SGD {
         for (var row = 0u; row < rows; row++) {
             let at = net + row * LANES + lane;
             let own = weights + row * stride;
@@ -132,7 +132,7 @@ fn learn(
             nets[clock + CLOCK_SECOND] = second;
         }
         let rest1 = 1.0f - beta1;
-        if settings[s].optimiser == OPTIMISER_ADAM_ROWS {
+        if params[s].optimiser == OPTIMISER_ADAM_ROWS {
             paces(lane, units, skill, s, net, number, output, found, rate);
             let count = skills[skill].inputs;
             let chosen = select(0.0f, 1.0f, lane == output);
@@ -164,7 +164,7 @@ fn learn(
 
 fn backward(lane: u32, skill: u32, s: u32, base: u32, child: u32, delta: f32, pace: f32) {
     let number = select(child, 0u, skills[skill].nets == 1u);
-    let units = lanes_of(settings[s].hidden);
+    let units = lanes_of(params[s].hidden);
     let found = errors(lane, units, skill, base, number, child, delta);
     learn(lane, units, skill, s, base, number, child - number, found, pace);
     // The output bias and the clocks are read by other lanes than the one that wrote them.

@@ -29,7 +29,7 @@ fn layer(lane: u32, units: u32, skill: u32, base: u32) {
                     sum = sum + weight(net + row * stride + lane) * x;
                 }
             }
-            activation = squash(sum);
+            activation = tanh(sum);
             for (var output = 0u; output < outputs; output++) {
                 partials[number + output][lane] = activation * weight(net + (count + 1u + output) * stride + lane);
             }
@@ -40,14 +40,14 @@ fn layer(lane: u32, units: u32, skill: u32, base: u32) {
 
 fn forward(lane: u32, skill: u32, s: u32, base: u32) {
     let children = skills[skill].children;
-    let lanes = lanes_of(settings[s].hidden);
+    let lanes = lanes_of(params[s].hidden);
     layer(lane, lanes, skill, base);
     lanes_sums(lane, children, lanes);
     if lane < children {
         let net = select(lane, 0u, skills[skill].nets == 1u);
         let row = skills[skill].inputs + 1u + skills[skill].outputs;
         let bias = weight(weights_of(skill, lanes, base, net) + row * stride_of(lanes) + (lane - net));
-        q[lane] = squash(partials[lane][0] + bias);
+        q[lane] = tanh(partials[lane][0] + bias);
     }
     workgroupBarrier();
 }

@@ -4,18 +4,18 @@
 //! changes their speed and not their bytes.
 
 use super::{Backend, BackendError, Cohort, Stop, Test, fresh, memory};
-use crate::advance::advance;
-use crate::evaluate::{STATE_CUT, STATE_FRESH, evaluate};
-use crate::learner::layout::{Cursor, Dispatch, Episode, Robot, Settings};
-use crate::learner::memory::{Learner, Shared};
-use crate::step::{ABREAST, step};
+use crate::env::workgroup::{CohortData, Learner};
+use crate::kernels::evaluate::{STATE_CUT, STATE_FRESH, evaluate};
+use crate::kernels::step::{ABREAST, step};
+use crate::kernels::train::advance;
+use crate::layout::{Dispatch, Episode, HyperParams, LearnerState, Robot};
 use bytemuck::{Pod, Zeroable};
 use rayon::prelude::*;
 use std::hint::black_box;
 use std::ops::Range;
 
 /// Quanta of one learner in a turn: some 10 ms.
-const QUANTA: u32 = 16_384;
+const ITERATIONS: u32 = 16_384;
 
 /// Learners for each thread that one call of [`Backend::advance`] moves: some tenths of a second. A number and not a
 /// time, for where a machine stands still for a while, none would have moved.
@@ -32,7 +32,7 @@ const MEMORY_SHARE: f64 = 0.5;
 pub struct CpuBackend {
     pool: rayon::ThreadPool,
     instructions: Instructions,
-    quanta: u32,
+    iterations: u32,
     cohort: Option<Cohort>,
 }
 
@@ -119,8 +119,8 @@ dispatched! {
     /// Runs [`evaluate`].
     run_evaluate, evaluate_avx2, evaluate_avx512 = evaluate(
         episode: &mut Episode,
-        shared: &Shared,
-        settings: &[Settings],
+        shared: &CohortData,
+        params: &[HyperParams],
         nets: &[f32],
         dispatch: &Dispatch,
         number: u32
@@ -129,7 +129,7 @@ dispatched! {
 
 dispatched! {
     /// Runs [`step`].
-    run_step, step_avx2, step_avx512 = step(robots: &mut [Robot], shared: &Shared)
+    run_step, step_avx2, step_avx512 = step(robots: &mut [Robot], shared: &CohortData)
 }
 
 /// A vector of the widest instructions, as it must lie for no access to touch two lines of the cache.
@@ -152,12 +152,12 @@ impl Desk {
 }
 
 impl CpuBackend {
-    /// A backend on `threads` threads (0: one per core) that leaves each learner after `quanta` quanta, if
+    /// A backend on `threads` threads (0: one per core) that leaves each learner after `iterations` iterations, if
     /// given.
     ///
     /// # Errors
     /// Where the threads cannot be started.
-    pub fn new(threads: usize, quanta: Option<u32>) -> Result<Self, BackendError> {
+    pub fn new(threads: usize, iterations: Option<u32>) -> Result<Self, BackendError> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| {
             BackendError::Unavailable {
                 message: format!("cannot start {threads} threads: {error}"),
@@ -165,7 +165,7 @@ impl CpuBackend {
             }
         })?;
         let instructions = Instructions::detect();
-        Ok(Self { pool, instructions, quanta: quanta.unwrap_or(QUANTA), cohort: None })
+        Ok(Self { pool, instructions, iterations: iterations.unwrap_or(ITERATIONS), cohort: None })
     }
 
     fn loaded(&self) -> Result<&Cohort, BackendError> {
@@ -202,11 +202,11 @@ impl Backend for CpuBackend {
         Ok(())
     }
 
-    fn advance(&mut self, stop: Stop) -> Result<&[Cursor], BackendError> {
+    fn advance(&mut self, stop: Stop) -> Result<&[LearnerState], BackendError> {
         let instructions = self.instructions;
         let cohort = self.cohort.as_mut().ok_or_else(nothing_loaded)?;
         let dispatch = Dispatch {
-            quanta: self.quanta,
+            iterations: self.iterations,
             stop_skill: stop.skill,
             stop_trial: stop.trial,
             skills: cohort.skills as u32,
@@ -215,37 +215,37 @@ impl Backend for CpuBackend {
         let shared = &cohort.shared;
         // The others' turn comes with a later call, when these have reached the stop.
         let turn = TURN * self.pool.current_num_threads();
-        let waiting = cohort.cursors.iter().enumerate().filter(|(_, cursor)| !stop.holds(cursor));
+        let waiting = cohort.states.iter().enumerate().filter(|(_, state)| !stop.holds(state));
         let end = waiting.take(turn).last().map_or(0, |(last, _)| last + 1);
         self.pool.install(|| {
-            cohort.cursors[..end]
+            cohort.states[..end]
                 .par_iter_mut()
-                .zip(cohort.settings.par_chunks(cohort.skills))
+                .zip(cohort.params.par_chunks(cohort.skills))
                 .zip(cohort.nets.par_chunks_mut(cohort.nets_stride))
                 .zip(cohort.lessons.par_chunks_mut(cohort.lessons_stride))
                 .zip(cohort.rows.par_chunks_mut(cohort.rows_stride))
-                .for_each_init(Desk::default, |desk, ((((cursor, settings), nets), lessons), rows)| {
+                .for_each_init(Desk::default, |desk, ((((state, params), nets), lessons), rows)| {
                     // The kernel would leave at once, but its nets would be copied twice for that.
-                    if stop.holds(cursor) {
+                    if stop.holds(state) {
                         return;
                     }
                     let own = desk.take(nets);
-                    let mut learner = Learner { shared, settings, cursor, nets: own, lessons, rows };
+                    let mut learner = Learner { shared, params, state, nets: own, lessons, rows };
                     run_advance(instructions, &mut learner, &dispatch);
                     nets.copy_from_slice(own);
                 });
         });
-        Ok(&cohort.cursors)
+        Ok(&cohort.states)
     }
 
     fn learners(&self) -> usize {
-        self.cohort.as_ref().map_or(0, |cohort| cohort.cursors.len())
+        self.cohort.as_ref().map_or(0, |cohort| cohort.states.len())
     }
 
     fn evaluate_some(&mut self, test: Test, learners: Range<usize>) -> Result<Vec<Episode>, BackendError> {
         let cohort = self.loaded()?;
         let dispatch = Dispatch {
-            quanta: u32::MAX,
+            iterations: u32::MAX,
             skills: cohort.skills as u32,
             episodes: test.episodes,
             test_skill: test.skill,
@@ -258,11 +258,11 @@ impl Backend for CpuBackend {
             // Episode by episode: few learners keep all threads busy too.
             episodes.par_iter_mut().enumerate().for_each(|(place, episode)| {
                 let (learner, number) = (learners.start + place / count, place % count);
-                let settings = &cohort.settings[learner * cohort.skills..][..cohort.skills];
+                let params = &cohort.params[learner * cohort.skills..][..cohort.skills];
                 let nets = &cohort.nets[learner * cohort.nets_stride..][..cohort.nets_stride];
                 debug_assert_eq!(episode.state, STATE_FRESH);
                 let shared = &cohort.shared;
-                run_evaluate(self.instructions, episode, shared, settings, nets, &dispatch, number as u32);
+                run_evaluate(self.instructions, episode, shared, params, nets, &dispatch, number as u32);
                 debug_assert!(episode.state <= STATE_CUT);
             });
         });
@@ -273,11 +273,11 @@ impl Backend for CpuBackend {
         self.loaded()
     }
 
-    fn step(&mut self, shared: &Shared, robots: &mut [Robot], quanta: u32) -> Result<(), BackendError> {
+    fn step(&mut self, shared: &CohortData, robots: &mut [Robot], iterations: u32) -> Result<(), BackendError> {
         let instructions = self.instructions;
         self.pool.install(|| {
             robots.par_chunks_mut(ABREAST).for_each(|robots| {
-                for _quantum in 0..quanta {
+                for _quantum in 0..iterations {
                     run_step(instructions, robots, shared);
                 }
             });

@@ -8,23 +8,23 @@ pub mod gpu;
 pub mod memory;
 pub mod parity;
 
-use crate::evaluate::STATE_FRESH;
-use crate::learner::layout::{Cursor, Episode, Robot, Settings};
-use crate::learner::memory::Shared;
-use crate::learner::phase::{PHASE_DONE, PHASE_START};
+use crate::env::workgroup::CohortData;
+use crate::kernels::evaluate::STATE_FRESH;
+use crate::layout::phase::{PHASE_DONE, PHASE_START};
+use crate::layout::{Episode, HyperParams, LearnerState, Robot};
 use std::ops::Range;
 
 /// All memory of the learners that train together.
 #[derive(Debug, Clone)]
 pub struct Cohort {
     /// What all learners share.
-    pub shared: Shared,
+    pub shared: CohortData,
     /// Skills of each learner.
     pub skills: usize,
     /// One record per learner and skill.
-    pub settings: Vec<Settings>,
+    pub params: Vec<HyperParams>,
     /// One per learner.
-    pub cursors: Vec<Cursor>,
+    pub states: Vec<LearnerState>,
     /// Words of one learner's nets.
     pub nets_stride: usize,
     /// All learners' nets.
@@ -50,10 +50,10 @@ pub struct Stop {
 
 impl Stop {
     /// Whether a learner waits at this point, has finished, or has failed.
-    pub fn holds(self, cursor: &Cursor) -> bool {
-        let beyond = cursor.skill > self.skill && cursor.phase <= PHASE_START;
-        let reached = cursor.skill == self.skill && cursor.phase == PHASE_START && cursor.trial >= self.trial;
-        beyond || reached || cursor.phase >= PHASE_DONE
+    pub fn holds(self, state: &LearnerState) -> bool {
+        let beyond = state.skill > self.skill && state.phase <= PHASE_START;
+        let reached = state.skill == self.skill && state.phase == PHASE_START && state.trial >= self.trial;
+        beyond || reached || state.phase >= PHASE_DONE
     }
 }
 
@@ -102,7 +102,7 @@ pub trait Backend {
     ///
     /// # Errors
     /// Where the device fails.
-    fn advance(&mut self, stop: Stop) -> Result<&[Cursor], BackendError>;
+    fn advance(&mut self, stop: Stop) -> Result<&[LearnerState], BackendError>;
 
     /// Learners of the cohort, 0 where none is loaded.
     fn learners(&self) -> usize;
@@ -127,11 +127,11 @@ pub trait Backend {
     /// Where the device fails.
     fn memory(&mut self) -> Result<&Cohort, BackendError>;
 
-    /// Lets robots carry out their action `quanta` times each.
+    /// Lets robots carry out their action `iterations` times each.
     ///
     /// # Errors
     /// Where the device fails.
-    fn step(&mut self, shared: &Shared, robots: &mut [Robot], quanta: u32) -> Result<(), BackendError>;
+    fn step(&mut self, shared: &CohortData, robots: &mut [Robot], iterations: u32) -> Result<(), BackendError>;
 }
 
 /// Why a backend could not be had or failed.

@@ -2,14 +2,12 @@
 //!
 //! Words are compared as bits. A number that is not finite counts as a difference even where both sides hold
 //! it, but for learners that have failed on both. The first difference is that of the first learner, and
-//! within a learner that of the first field: the cursor's in the order of their declaration, then nets,
+//! within a learner that of the first field: the state's in the order of their declaration, then nets,
 //! lessons and rows, word by word.
 
 use super::Cohort;
-use crate::learner::layout::{
-    Episode, LANES, LAYOUTS, LESSON_HEADER, MEMORY_WORD, RECORD_WORDS, ROW_WORDS, Robot, SkillPlan,
-};
-use crate::learner::phase::PHASE_FAILED;
+use crate::layout::phase::PHASE_FAILED;
+use crate::layout::{Episode, LANES, LAYOUTS, LESSON_HEADER, MEMORY_WORD, RECORD_WORDS, ROW_WORDS, Robot, SkillShape};
 use crate::qnet::backward::CLOCK_SECOND;
 use crate::qnet::forward::net_of;
 use std::fmt;
@@ -132,7 +130,7 @@ fn record_word(word: usize) -> Place {
 }
 
 /// Word `word` of a learner's nets. A mirrored skill has none of its own.
-fn nets_word(skills: &[SkillPlan], word: usize) -> Place {
+fn nets_word(skills: &[SkillShape], word: usize) -> Place {
     let mut owners = skills.iter().enumerate().filter(|(_, plan)| plan.mirrored == 0);
     let Some((skill, plan)) = owners.rfind(|(_, plan)| plan.nets_offset as usize <= word) else {
         return (format!("nets word {word}"), true);
@@ -165,7 +163,7 @@ fn nets_word(skills: &[SkillPlan], word: usize) -> Place {
 }
 
 /// Word `word` of a learner's lessons.
-fn lessons_word(skills: &[SkillPlan], word: usize) -> Place {
+fn lessons_word(skills: &[SkillShape], word: usize) -> Place {
     let Some((skill, plan)) = skills.iter().enumerate().rfind(|(_, plan)| plan.memory_offset as usize <= word) else {
         return (format!("lessons word {word}"), false);
     };
@@ -201,8 +199,8 @@ pub fn advance(left: &Cohort, right: &Cohort) -> Option<Difference> {
     }
     let skills = &left.shared.skills;
     let one = |learner: usize| {
-        let cursors = (&left.cursors[learner], &right.cursors[learner]);
-        let failed = cursors.0.phase == PHASE_FAILED && cursors.1.phase == PHASE_FAILED;
+        let states = (&left.states[learner], &right.states[learner]);
+        let failed = states.0.phase == PHASE_FAILED && states.1.phase == PHASE_FAILED;
         let at = (KERNEL, learner);
         let part = |stride: usize| learner * stride..(learner + 1) * stride;
         let (nets, lessons, rows) = (part(left.nets_stride), part(left.lessons_stride), part(left.rows_stride));
@@ -211,9 +209,9 @@ pub fn advance(left: &Cohort, right: &Cohort) -> Option<Difference> {
         let outputs = |left: &[u32], right: &[u32], place: &dyn Fn(usize) -> Place| {
             first(at, (left, right), failed, |word| output(place(word), left[word], right[word]))
         };
-        first(at, (words(cursors.0), words(cursors.1)), failed, |word| {
-            let (name, number) = field_of("Cursor", word);
-            (format!("cursor {name}"), number)
+        first(at, (words(states.0), words(states.1)), failed, |word| {
+            let (name, number) = field_of("LearnerState", word);
+            (format!("state {name}"), number)
         })
         .or_else(|| {
             let both = (bytemuck::cast_slice(&left.nets[nets.clone()]), bytemuck::cast_slice(&right.nets[nets]));
@@ -225,8 +223,8 @@ pub fn advance(left: &Cohort, right: &Cohort) -> Option<Difference> {
         })
         .or_else(|| outputs(&left.rows[rows.clone()], &right.rows[rows], &rows_word))
     };
-    let learners = left.cursors.len().min(right.cursors.len());
-    let size = || sizes(KERNEL, learners, "learners", left.cursors.len(), right.cursors.len());
+    let learners = left.states.len().min(right.states.len());
+    let size = || sizes(KERNEL, learners, "learners", left.states.len(), right.states.len());
     (0..learners).find_map(one).or_else(size)
 }
 

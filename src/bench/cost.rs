@@ -8,13 +8,13 @@
 //! Bytes are those of nets: what is read, and what is written, of the lanes' rows. Everything else fits registers or
 //! the nearest cache.
 
-use crate::learner::layout::{LANES, MAX_SKILLS, SkillPlan};
-use crate::math::rng::{BATCH, DICE};
+use crate::env::light::{falloff, in_sight};
+use crate::env::segments::{BLOCK, SegmentGrid};
+use crate::env::sonar::LINE_LANES;
+use crate::layout::{LANES, MAX_SKILLS, SkillShape};
+use crate::math::rng::{BATCH, DRAWS};
 use crate::qnet::backward::{OPTIMISER_ADAM_ROWS, OPTIMISER_SGD, ROW_BLOCK};
 use crate::qnet::forward::bits_of;
-use crate::robot::floor::{BLOCK, Floor};
-use crate::robot::light::{falloff, in_sight};
-use crate::robot::sonar::LINE_LANES;
 use serde::{Deserialize, Serialize};
 
 /// Cost of one unit of work.
@@ -40,7 +40,7 @@ mod operations {
     pub(super) const SQUARE_ROOT: usize = 2 + RECIPROCAL_SQRT + 1 + 1;
     /// `exponential`: bounds 4, rounding 9, remainder 4, square 1, polynomial 8, sum 3, power of two 2, product 1.
     pub(super) const EXPONENTIAL: usize = 4 + 9 + 4 + 1 + 8 + 3 + 2 + 1;
-    /// `squash`: bounds 4, square 1, two polynomials of 8, two products, reciprocal, finiteness 3.
+    /// `tanh`: bounds 4, square 1, two polynomials of 8, two products, reciprocal, finiteness 3.
     pub(super) const SQUASH: usize = 4 + 1 + 2 * 8 + 2 + RECIPROCAL + 3;
     /// `flush`: absolute value, comparison, selection.
     pub(super) const FLUSH: usize = 3;
@@ -61,18 +61,24 @@ const SIGHT: usize = 33;
 const REDUCE: usize = LANES - 1;
 
 /// A step of a robot: all random numbers, contact, bumpers, 24 ranges, light and compass; mean over the places where
-/// robots are. `light` is the noise of the light, `moves` the share of actions that travel, `dice` the draws that are made
+/// robots are. `light` is the noise of the light, `moves` the share of actions that travel, `random` the draws that are made
 /// on every step.
-pub fn step(floor: &Floor, light: f32, places: impl Iterator<Item = (f32, f32)>, moves: f64, dice: usize) -> Cost {
+pub fn step(
+    floor: &SegmentGrid,
+    light: f32,
+    places: impl Iterator<Item = (f32, f32)>,
+    moves: f64,
+    random: usize,
+) -> Cost {
     let (mut sum, mut count) = (0.0, 0_u32);
     for (x, y) in places {
         sum += step_at(floor, light, x, y, moves);
         count += 1;
     }
-    Cost { lane_operations: (dice * DRAW) as f64 + sum / f64::from(count.max(1)), bytes: 0.0 }
+    Cost { lane_operations: (random * DRAW) as f64 + sum / f64::from(count.max(1)), bytes: 0.0 }
 }
 
-fn step_at(floor: &Floor, light: f32, x: f32, y: f32, moves: f64) -> f64 {
+fn step_at(floor: &SegmentGrid, light: f32, x: f32, y: f32, moves: f64) -> f64 {
     let touched = floor.touchable(x, y, 0.0).len() * BLOCK;
     let sweep = touched * (CONTACT + 9) + 5 * BLOCK;
     let bumpers = touched * TOUCH + BLOCK;
@@ -94,7 +100,7 @@ fn step_at(floor: &Floor, light: f32, x: f32, y: f32, moves: f64) -> f64 {
 
 /// All nets of a skill forwards: weights read once. `lanes` of each row are in use, and on average `seen` of the inputs:
 /// bits that are not set are passed over.
-pub fn forward(skill: &SkillPlan, lanes: usize, seen: f64) -> Cost {
+pub fn forward(skill: &SkillShape, lanes: usize, seen: f64) -> Cost {
     let (nets, outputs) = (f64::from(skill.nets), f64::from(skill.outputs));
     let hidden = nets * lanes as f64 * (2.0 * seen + SQUASH as f64 + outputs);
     let values = skill.children as usize * (lanes + SQUASH);
@@ -103,7 +109,7 @@ pub fn forward(skill: &SkillPlan, lanes: usize, seen: f64) -> Cost {
 
 /// One transition replayed: nets forwards, as in [`forward`], odds, and one net backwards by one of the optimisers of
 /// `qnet/backward`.
-pub fn transition(skill: &SkillPlan, lanes: usize, seen: f64, optimiser: u32) -> Cost {
+pub fn transition(skill: &SkillShape, lanes: usize, seen: f64, optimiser: u32) -> Cost {
     let rows = skill.rows as usize;
     let odds = skill.children as usize * (EXPONENTIAL + 4);
     let errors = lanes * 4;
@@ -130,17 +136,17 @@ pub fn transition(skill: &SkillPlan, lanes: usize, seen: f64, optimiser: u32) ->
 /// somebody's applicability depends on. The nets of a skill that is chosen and that nobody watches are not counted,
 /// nor is travel: both depend on what is chosen.
 pub fn decision(
-    floor: &Floor,
+    floor: &SegmentGrid,
     light: f32,
     places: impl Iterator<Item = (f32, f32)>,
-    skills: &[SkillPlan],
+    skills: &[SkillShape],
     root: usize,
 ) -> Cost {
     let watched = (0..root.min(MAX_SKILLS)).filter(|n| (skills[root].watched >> n) & 1 == 1);
     // Bits are left out.
-    let seen = |skill: &SkillPlan| skill.inputs - bits_of(skill).count_ones();
+    let seen = |skill: &SkillShape| skill.inputs - bits_of(skill).count_ones();
     let of = |n: usize| forward(&skills[n], LANES, f64::from(seen(&skills[n])));
-    watched.chain([root]).map(of).fold(step(floor, light, places, 0.0, DICE), |sum, own| Cost {
+    watched.chain([root]).map(of).fold(step(floor, light, places, 0.0, DRAWS), |sum, own| Cost {
         lane_operations: sum.lane_operations + own.lane_operations,
         bytes: sum.bytes + own.bytes,
     })

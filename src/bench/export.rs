@@ -63,11 +63,11 @@ pub fn export(folder: &Path, learners: u32) -> Result<(), BenchError> {
     std::fs::create_dir_all(folder).map_err(failed)?;
     let (walk, numbers) = simulate::simulate()?;
     write(&folder.join("simulate.safetensors"), &walk, &numbers)?;
-    let (replay, settings) = replay::replay(learners)?;
-    write(&folder.join("replay.safetensors"), &replay, &settings)?;
+    let (replay, params) = replay::replay(learners)?;
+    write(&folder.join("replay.safetensors"), &replay, &params)?;
     let readme = include_str!("export/README.md")
         .replace("{simulate}", &table(&walk, &numbers))
-        .replace("{replay}", &table(&replay, &settings));
+        .replace("{replay}", &table(&replay, &params));
     put(&folder.join("README.md"), readme.as_bytes())
 }
 

@@ -24,8 +24,8 @@ pub mod workload;
 
 use crate::backend::BackendError;
 use crate::config::ConfigError;
-use crate::experiment::climb::Halt;
-use crate::experiment::group::SetupError;
+use crate::train::batch_group::SetupError;
+use crate::train::train_loop::Halt;
 use std::path::{Path, PathBuf};
 
 /// Why a benchmark cannot be run, or its figures would mean nothing.

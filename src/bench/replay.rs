@@ -7,15 +7,15 @@
 use super::BenchError;
 use crate::backend::{Backend, Cohort, Stop};
 use crate::config::plan::Plan;
-use crate::experiment::group::{Group, groups};
-use crate::learner::layout::{Cursor, LANES, LESSON_HEADER, Settings, SkillPlan};
-use crate::learner::memory::Learner;
-use crate::lesson::record::CUT;
-use crate::lesson::replay::taught_lesson;
-use crate::math::functions::{exponential, flush, reciprocal, reciprocal_sqrt, square_root, squash};
+use crate::env::workgroup::Learner;
+use crate::layout::{HyperParams, LANES, LESSON_HEADER, LearnerState, SkillShape};
+use crate::learn::lesson::CUT;
+use crate::learn::td_lambda::taught_lesson;
+use crate::math::functions::{exponential, flush, reciprocal, reciprocal_sqrt, square_root, tanh};
+use crate::policy::features::{GROUP_BUMPERS, GROUP_LIGHT, GROUP_SONAR};
 use crate::qnet::backward::{CLOCK_SECOND, OPTIMISER_ADAM_ROWS, OPTIMISER_SGD};
 use crate::qnet::forward::{bits_of, lanes_of, net_of};
-use crate::skill::encode::{GROUP_BUMPERS, GROUP_LIGHT, GROUP_SONAR};
+use crate::train::batch_group::{Group, groups};
 use bytemuck::Zeroable;
 
 /// Learners that learn from their taught lessons, pass after pass.
@@ -37,7 +37,7 @@ impl Drill {
     }
 
     /// Shape of the skill that is learned.
-    pub fn skill(&self) -> &SkillPlan {
+    pub fn skill(&self) -> &SkillShape {
         &self.group.shared.skills[0]
     }
 
@@ -47,16 +47,16 @@ impl Drill {
     }
 
     /// How a learner learns.
-    pub fn settings(&self, learner: usize) -> &Settings {
-        &self.cohort.settings[learner * self.cohort.skills]
+    pub fn params(&self, learner: usize) -> &HyperParams {
+        &self.cohort.params[learner * self.cohort.skills]
     }
 
     /// Word of the bank at which taught lesson `number` of a learner stands.
     pub fn lesson_of(&self, learner: usize, number: u32) -> usize {
-        let mut cursor: Cursor = Cursor::zeroed();
-        let settings = std::slice::from_ref(self.settings(learner));
+        let mut state: LearnerState = LearnerState::zeroed();
+        let params = std::slice::from_ref(self.params(learner));
         let shared = &self.group.shared;
-        let learner = Learner { shared, settings, cursor: &mut cursor, nets: &mut [], lessons: &mut [], rows: &mut [] };
+        let learner = Learner { shared, params, state: &mut state, nets: &mut [], lessons: &mut [], rows: &mut [] };
         taught_lesson(&learner, number) as usize
     }
 
@@ -66,7 +66,7 @@ impl Drill {
     /// Where the backend fails.
     pub fn replay(backend: &mut dyn Backend) -> Result<(), BenchError> {
         let stop = Stop { skill: 0, trial: 0 };
-        while !backend.advance(stop)?.iter().all(|cursor| stop.holds(cursor)) {}
+        while !backend.advance(stop)?.iter().all(|state| stop.holds(state)) {}
         Ok(())
     }
 
@@ -74,11 +74,11 @@ impl Drill {
     pub fn replay_scalar(&self, nets: &mut [Nets], passes: u32) {
         let shared = &self.group.shared;
         for (number, nets) in nets.iter_mut().enumerate() {
-            let settings = self.settings(number);
+            let params = self.params(number);
             for _pass in 0..passes {
-                for lesson in 0..settings.lessons {
+                for lesson in 0..params.lessons {
                     let at = self.lesson_of(number, lesson);
-                    nets.replay(&shared.bank[at..], self.skill(), settings, &shared.atlas);
+                    nets.replay(&shared.bank[at..], self.skill(), params, &shared.tables);
                 }
             }
         }
@@ -86,31 +86,31 @@ impl Drill {
 
     /// Transitions that all learners replay in so many passes.
     pub fn transitions(&self, passes: u32) -> u64 {
-        let learners = 0..self.cohort.cursors.len();
+        let learners = 0..self.cohort.states.len();
         let lessons =
-            learners.flat_map(|learner| (0..self.settings(learner).lessons).map(move |number| (learner, number)));
+            learners.flat_map(|learner| (0..self.params(learner).lessons).map(move |number| (learner, number)));
         let steps = lessons.map(|(learner, number)| u64::from(self.group.shared.bank[self.lesson_of(learner, number)]));
         steps.sum::<u64>() * u64::from(passes)
     }
 
     /// The nets of a cohort of this shape, for the scalar reference.
     pub fn nets(&self, cohort: &Cohort) -> Vec<Nets> {
-        let units = lanes_of(self.settings(0).hidden);
+        let units = lanes_of(self.params(0).hidden);
         cohort.nets.chunks(cohort.nets_stride).map(|words| Nets::from_lanes(words, self.skill(), units)).collect()
     }
 
     /// Inputs of a step that are not bits, or are set: the mean over the taught lessons.
     pub fn inputs_seen(&self) -> f64 {
         let (shared, skill) = (&self.group.shared, self.skill());
-        let lessons = (0..self.cohort.cursors.len())
-            .flat_map(|learner| (0..self.settings(learner).lessons).map(move |lesson| self.lesson_of(learner, lesson)));
+        let lessons = (0..self.cohort.states.len())
+            .flat_map(|learner| (0..self.params(learner).lessons).map(move |lesson| self.lesson_of(learner, lesson)));
         let records = lessons.flat_map(|at| {
             let steps = shared.bank[at] as usize;
             shared.bank[at + LESSON_HEADER..].chunks(skill.record_words as usize).take(steps)
         });
         let bits = bits_of(skill);
         let seen = |record: &[u32]| {
-            let x = encode(record, skill, &shared.atlas);
+            let x = encode(record, skill, &shared.tables);
             x.iter().enumerate().filter(|(input, x)| (bits >> input) & 1 == 0 || **x != 0.0).count()
         };
         let (sum, count) = records.fold((0, 0_usize), |(sum, count), record| (sum + seen(record), count + 1));
@@ -150,7 +150,7 @@ pub struct Nets {
 
 impl Nets {
     /// Copies a learner's nets, of so many units, out of the lanes' layout.
-    pub fn from_lanes(words: &[f32], skill: &SkillPlan, units: usize) -> Self {
+    pub fn from_lanes(words: &[f32], skill: &SkillShape, units: usize) -> Self {
         let inputs = skill.inputs as usize;
         let slab_words = skill.rows as usize * LANES;
         let slab = |at: usize| {
@@ -189,29 +189,29 @@ impl Nets {
     }
 
     /// Learns from a taught lesson backwards.
-    pub fn replay(&mut self, lesson: &[u32], skill: &SkillPlan, settings: &Settings, atlas: &[u32]) {
+    pub fn replay(&mut self, lesson: &[u32], skill: &SkillShape, params: &HyperParams, tables: &[u32]) {
         let steps = lesson[0] as usize;
         let (mut next_best, mut next_return) = (0.0, 0.0);
-        let open = lesson[1] == CUT && settings.timeout_terminal == 0;
+        let open = lesson[1] == CUT && params.timeout_terminal == 0;
         for step in (0..if open { steps + 1 } else { steps }).rev() {
             let at = LESSON_HEADER + step * skill.record_words as usize;
             let record = &lesson[at..at + skill.record_words as usize];
-            let x = encode(record, skill, atlas);
+            let x = encode(record, skill, tables);
             let hidden: Vec<Vec<f32>> = self.nets.iter().map(|net| self.hidden(net, &x)).collect();
             let q: Vec<f32> = self.nets.iter().zip(&hidden).map(|(net, hidden)| output(net, hidden)).collect();
             let best = q.iter().copied().fold(-2.0, f32::max);
             // The filter's odds are part of the work, though taught steps pass whatever they are.
-            let odds: f32 = q.iter().map(|value| exponential(settings.sharpness_start * (value - best))).sum();
+            let odds: f32 = q.iter().map(|value| exponential(params.inverse_temperature_start * (value - best))).sum();
             std::hint::black_box(odds);
             if step == steps {
                 (next_best, next_return) = (best, best);
                 continue;
             }
             let child = (record[8] & 0xff) as usize;
-            let future = (1.0 - settings.lambda) * next_best + settings.lambda * next_return;
-            let aim = f32::from_bits(record[9]) * settings.value_scale + settings.gamma * future;
-            let goal = aim.max(-settings.target_limit).min(settings.target_limit);
-            self.learn(child, &x, &hidden[child], q[child], goal - q[child], settings);
+            let future = (1.0 - params.lambda) * next_best + params.lambda * next_return;
+            let aim = f32::from_bits(record[9]) * params.value_scale + params.gamma * future;
+            let goal = aim.max(-params.target_limit).min(params.target_limit);
+            self.learn(child, &x, &hidden[child], q[child], goal - q[child], params);
             (next_best, next_return) = (best, goal);
         }
     }
@@ -222,32 +222,32 @@ impl Nets {
             for (weight, x) in unit[..self.inputs].iter().zip(x) {
                 sum += weight * x;
             }
-            squash(sum)
+            tanh(sum)
         };
         net.weights.units.iter().map(unit).collect()
     }
 
-    fn learn(&mut self, child: usize, x: &[f32], hidden: &[f32], value: f32, delta: f32, settings: &Settings) {
+    fn learn(&mut self, child: usize, x: &[f32], hidden: &[f32], value: f32, delta: f32, params: &HyperParams) {
         let net = &mut self.nets[child];
         let error = delta * (1.0 - value * value);
-        if settings.optimiser == OPTIMISER_SGD {
+        if params.optimiser == OPTIMISER_SGD {
             net.update(x, hidden, error, |weight, velocity, _, slope| {
-                *velocity = flush(settings.beta1 * *velocity + settings.rate * slope);
+                *velocity = flush(params.beta1 * *velocity + params.rate * slope);
                 *weight += *velocity;
             });
             return;
         }
-        net.first = flush(net.first * settings.beta1);
-        net.second = flush(net.second * settings.beta2);
-        let rate = settings.rate * square_root(1.0 - net.second) * reciprocal(1.0 - net.first);
-        if settings.optimiser == OPTIMISER_ADAM_ROWS {
-            net.update_rows(x, hidden, error, rate, settings);
+        net.first = flush(net.first * params.beta1);
+        net.second = flush(net.second * params.beta2);
+        let rate = params.rate * square_root(1.0 - net.second) * reciprocal(1.0 - net.first);
+        if params.optimiser == OPTIMISER_ADAM_ROWS {
+            net.update_rows(x, hidden, error, rate, params);
             return;
         }
         net.update(x, hidden, error, |weight, mean, square, slope| {
-            *mean = flush(settings.beta1 * *mean + (1.0 - settings.beta1) * slope);
-            *square = flush(settings.beta2 * *square + (1.0 - settings.beta2) * (slope * slope));
-            *weight += rate * *mean * reciprocal_sqrt(*square + settings.epsilon2);
+            *mean = flush(params.beta1 * *mean + (1.0 - params.beta1) * slope);
+            *square = flush(params.beta2 * *square + (1.0 - params.beta2) * (slope * slope));
+            *weight += rate * *mean * reciprocal_sqrt(*square + params.epsilon2);
         });
     }
 }
@@ -271,20 +271,20 @@ impl Net {
     }
 
     /// Adam with one second moment for each row of weights: of one input, of the hidden biases, of the output.
-    fn update_rows(&mut self, x: &[f32], hidden: &[f32], error: f32, rate: f32, settings: &Settings) {
+    fn update_rows(&mut self, x: &[f32], hidden: &[f32], error: f32, rate: f32, params: &HyperParams) {
         let Self { weights, means, rows, .. } = self;
         let slope = |unit: usize| error * weights.output[unit] * (1.0 - hidden[unit] * hidden[unit]);
         let slopes: Vec<f32> = (0..hidden.len()).map(slope).collect();
-        let below = mean_square(&slopes, settings);
-        let above = mean_square(hidden, settings);
+        let below = mean_square(&slopes, params);
+        let above = mean_square(hidden, params);
         // The factor that a row's gradient has in common, and the pace at which the row moves.
         let mut pace = |row: usize, factor: f32, alike: f32| {
-            let square = settings.beta2 * rows[row] + (1.0 - settings.beta2) * (factor * factor * alike);
+            let square = params.beta2 * rows[row] + (1.0 - params.beta2) * (factor * factor * alike);
             rows[row] = flush(square);
-            ((1.0 - settings.beta1) * factor, rate * reciprocal_sqrt(rows[row] + settings.epsilon2))
+            ((1.0 - params.beta1) * factor, rate * reciprocal_sqrt(rows[row] + params.epsilon2))
         };
         let step = |weight: &mut f32, mean: &mut f32, (factor, pace): (f32, f32), own: f32| {
-            *mean = flush(settings.beta1 * *mean + factor * own);
+            *mean = flush(params.beta1 * *mean + factor * own);
             *weight += pace * *mean;
         };
         let bias = x.len();
@@ -303,8 +303,8 @@ impl Net {
 }
 
 /// Mean over the hidden units of their squared values.
-fn mean_square(values: &[f32], settings: &Settings) -> f32 {
-    tree_sum(values.iter().map(|value| value * value).collect()) * settings.unit_share
+fn mean_square(values: &[f32], params: &HyperParams) -> f32 {
+    tree_sum(values.iter().map(|value| value * value).collect()) * params.unit_share
 }
 
 /// Sum in the lanes' order.
@@ -318,17 +318,17 @@ fn tree_sum(mut sums: Vec<f32>) -> f32 {
 
 fn output(net: &Net, hidden: &[f32]) -> f32 {
     let sum = tree_sum(net.weights.output.iter().zip(hidden).map(|(weight, active)| active * weight).collect());
-    squash(sum + net.weights.bias)
+    tanh(sum + net.weights.bias)
 }
 
 /// Inputs of the nets from one recorded step.
-pub fn encode(record: &[u32], skill: &SkillPlan, atlas: &[u32]) -> Vec<f32> {
+pub fn encode(record: &[u32], skill: &SkillShape, tables: &[u32]) -> Vec<f32> {
     let mut x = Vec::with_capacity(skill.inputs as usize);
     for group in 0..skill.groups as usize {
         match skill.group_kind[group] {
             GROUP_SONAR => x.extend((0..24).map(|ray| {
                 let byte = (record[ray / 4] >> (8 * (ray % 4))) & 0xff;
-                f32::from_bits(atlas[(skill.group_table[group] + byte) as usize])
+                f32::from_bits(tables[(skill.group_table[group] + byte) as usize])
             })),
             GROUP_LIGHT => x.extend((0..24).map(|ray| ((record[6] >> ray) & 1) as f32)),
             GROUP_BUMPERS => x.extend((0..4).map(|side| ((record[6] >> (24 + side)) & 1) as f32)),

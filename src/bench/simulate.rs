@@ -7,15 +7,15 @@
 use super::BenchError;
 use crate::backend::Backend;
 use crate::config::plan::Plan;
-use crate::experiment::senses::{floor_only, robot_at};
-use crate::learner::layout::{Robot, Segment, WorldPlan};
-use crate::learner::memory::Shared;
+use crate::env::contact::{BUMPER_GAP, RADIUS};
+use crate::env::motion::{BACKWARD, COLLISION, DOCKED, FORWARD, turn_of};
+use crate::env::observe::{DRAW_ACTUATOR, DRAW_COMPASS, DRAW_LIGHT};
+use crate::env::sonar::{LINES, reading};
+use crate::env::workgroup::CohortData;
+use crate::layout::{Robot, Segment, WorldUniform};
 use crate::math::functions::{exponential, reciprocal, reciprocal_sqrt, sin_cos, square_root, wrap_degrees};
 use crate::math::rng::{Purpose, Stream, below, coarse_noise, draw, noise, philox};
-use crate::robot::collide::{BUMPER_GAP, RADIUS};
-use crate::robot::motion::{BACKWARD, COLLISION, DOCKED, FORWARD, turn_of};
-use crate::robot::sonar::{LINES, reading};
-use crate::skill::observe::{DICE_ACTUATOR, DICE_COMPASS, DICE_LIGHT};
+use crate::train::observation::{floor_only, robot_at};
 use crate::world::Pose;
 use glam::Vec2;
 use std::ops::Range;
@@ -24,7 +24,7 @@ use std::ops::Range;
 #[derive(Debug, Clone)]
 pub struct Walk {
     /// The floor and its segment lists.
-    pub shared: Shared,
+    pub shared: CohortData,
     /// The robots, before their next action.
     pub robots: Vec<Robot>,
 }
@@ -70,7 +70,7 @@ impl Walk {
             for (robot, action) in self.robots.iter_mut().zip(round) {
                 robot.action = *action;
                 for _time in 0..times {
-                    step(robot, &self.shared.floor.plan, &self.shared.atlas);
+                    step(robot, &self.shared.floor.plan, &self.shared.tables);
                 }
             }
         }
@@ -105,10 +105,10 @@ impl StepNoise {
         };
         let shared = |first: u32, bearing: usize| coarse_noise(robot.noise_kind, bearing_word(stream, first, bearing));
         Self {
-            slip: robot.noise_actuator * apart(DICE_ACTUATOR) + 1.0,
+            slip: robot.noise_actuator * apart(DRAW_ACTUATOR) + 1.0,
             sonar: std::array::from_fn(|ray| robot.noise_sonar * shared(0, ray) + 1.0),
-            light: std::array::from_fn(|ray| robot.noise_light * shared(DICE_LIGHT, ray) + 1.0),
-            compass: robot.noise_compass * apart(DICE_COMPASS),
+            light: std::array::from_fn(|ray| robot.noise_light * shared(DRAW_LIGHT, ray) + 1.0),
+            compass: robot.noise_compass * apart(DRAW_COMPASS),
         }
     }
 }
@@ -132,16 +132,16 @@ fn stream_of(robot: &Robot) -> Stream {
 const FAR: f32 = 1.0e6;
 
 /// One robot carries out its action and senses.
-pub fn step(robot: &mut Robot, world: &WorldPlan, atlas: &[u32]) {
+pub fn step(robot: &mut Robot, world: &WorldUniform, tables: &[u32]) {
     let stream = stream_of(robot);
-    let slip_words = draw(stream, DICE_ACTUATOR as u32);
+    let slip_words = draw(stream, DRAW_ACTUATOR as u32);
     let slip = robot.noise_actuator * noise(robot.noise_kind, slip_words[0], slip_words[1]) + 1.0;
     act(robot, world, slip);
-    sense(robot, world, atlas, stream);
+    sense(robot, world, tables, stream);
     robot.step += 1;
 }
 
-fn act(robot: &mut Robot, world: &WorldPlan, slip: f32) {
+fn act(robot: &mut Robot, world: &WorldUniform, slip: f32) {
     robot.heading = wrap_degrees(robot.heading + turn_of(robot.action) * slip);
     robot.events = 0;
     let (sine, cosine) = sin_cos(robot.heading);
@@ -234,13 +234,13 @@ impl Heard {
     }
 }
 
-fn sense(robot: &mut Robot, world: &WorldPlan, atlas: &[u32], stream: Stream) {
+fn sense(robot: &mut Robot, world: &WorldUniform, tables: &[u32], stream: Stream) {
     let (x, y) = (robot.x, robot.y);
     let (sine, cosine) = sin_cos(robot.heading);
     let column = ((x * 0.083_333_336) as u32).min(world.cell_columns - 1);
     let row = ((y * 0.083_333_336) as u32).min(world.cell_rows - 1);
     let cell = (world.cell_starts + row * world.cell_columns + column) as usize;
-    let near = &atlas[atlas[cell] as usize..atlas[cell + 1] as usize];
+    let near = &tables[tables[cell] as usize..tables[cell + 1] as usize];
     let near: Vec<Heard> = near.iter().map(|i| Heard::new(&world.segment[*i as usize], x, y)).collect();
     let (lx, ly) = (world.light_x - x, world.light_y - y);
     let distance2 = (lx * lx + ly * ly).max(1.0);
@@ -261,7 +261,7 @@ fn sense(robot: &mut Robot, world: &WorldPlan, atlas: &[u32], stream: Stream) {
         if seen {
             let aim = facing * ((ux * lx + uy * ly) * nearness);
             let bright = falloff * exponential(14.590_25 * (aim - 1.0));
-            let noise = coarse_noise(robot.noise_kind, bearing_word(stream, DICE_LIGHT, ray));
+            let noise = coarse_noise(robot.noise_kind, bearing_word(stream, DRAW_LIGHT, ray));
             lit |= u32::from(bright * (robot.noise_light * noise + 1.0) > 1.0) << ray;
         }
     }
@@ -269,7 +269,7 @@ fn sense(robot: &mut Robot, world: &WorldPlan, atlas: &[u32], stream: Stream) {
         robot.record[word] = four[0] | four[1] << 8 | four[2] << 16 | four[3] << 24;
     }
     robot.record[6] = lit | robot.bumpers << 24;
-    let words = draw(stream, DICE_COMPASS as u32);
+    let words = draw(stream, DRAW_COMPASS as u32);
     let error = noise(robot.noise_kind, words[0], words[1]);
     robot.record[7] = wrap_degrees(robot.heading + robot.noise_compass * error).to_bits();
 }
@@ -285,7 +285,7 @@ fn cast(near: &[Heard], ux: f32, uy: f32, facing: f32) -> f32 {
     reciprocal(closest)
 }
 
-fn in_sight(world: &WorldPlan, x: f32, y: f32) -> bool {
+fn in_sight(world: &WorldUniform, x: f32, y: f32) -> bool {
     let (lx, ly) = (world.light_x - x, world.light_y - y);
     !world.segment[..world.segments as usize].iter().any(|segment| {
         let (ax, ay) = (segment.ax - x, segment.ay - y);

@@ -10,12 +10,12 @@ use super::simulate::Walk;
 use super::workload::{self, DOCKING};
 use crate::backend::{Cohort, Test};
 use crate::config::plan::{Optimiser, Plan};
-use crate::experiment::group::{Group, LearnerId, groups};
-use crate::experiment::train::train;
-use crate::learner::layout::Settings;
+use crate::layout::HyperParams;
 use crate::math::rng::BATCH;
 use crate::qnet::backward::{OPTIMISER_ADAM_ROWS, OPTIMISER_SGD};
 use crate::qnet::forward::lanes_of;
+use crate::train::batch::train;
+use crate::train::batch_group::{Group, LearnerId, groups};
 use glam::Vec2;
 
 /// A piece of work done once.
@@ -178,7 +178,7 @@ impl Task for Replay {
     }
 
     fn about(&self) -> String {
-        let rule = match self.drill.settings(0).optimiser {
+        let rule = match self.drill.params(0).optimiser {
             OPTIMISER_SGD => "gradient descent",
             OPTIMISER_ADAM_ROWS => "Adam with one second moment a row",
             _ => "Adam",
@@ -188,13 +188,13 @@ impl Task for Replay {
             "one replayed transition: {} nets of {}-{}-1 forwards, one backwards, {rule}; {} learners",
             skill.nets,
             skill.inputs,
-            self.drill.settings(0).hidden,
-            self.drill.cohort().cursors.len()
+            self.drill.params(0).hidden,
+            self.drill.cohort().states.len()
         )
     }
 
     fn cost(&self) -> Option<(Cost, Limit, Option<Limit>)> {
-        let Settings { hidden, optimiser, .. } = *self.drill.settings(0);
+        let HyperParams { hidden, optimiser, .. } = *self.drill.params(0);
         let cost = cost::transition(self.drill.skill(), lanes_of(hidden), self.drill.inputs_seen(), optimiser);
         Some((cost, Limit::MultiplyAdd, Some(Limit::FarUpdate)))
     }
@@ -260,8 +260,8 @@ impl<'a> Decisions<'a> {
         let mut cohort = hierarchy.group.cohort(&hierarchy.plan, &hierarchy.ids(size.learners));
         // Tests read nets only.
         (cohort.lessons_stride, cohort.rows_stride) = (1, 1);
-        cohort.lessons = vec![0; cohort.cursors.len()];
-        cohort.rows = vec![0; cohort.cursors.len()];
+        cohort.lessons = vec![0; cohort.states.len()];
+        cohort.rows = vec![0; cohort.states.len()];
         Self { hierarchy, cohort, episodes: size.episodes }
     }
 }
@@ -275,7 +275,7 @@ impl Task for Decisions<'_> {
         format!(
             "one step of a robot whose tree of {} skills decides: sense, watch, choose, act; {} learners x {} trials",
             self.cohort.skills,
-            self.cohort.cursors.len(),
+            self.cohort.states.len(),
             self.episodes
         )
     }

@@ -31,13 +31,14 @@ pub(super) struct BackendArguments {
     threads: u32,
     /// Quanta (steps or replayed transitions) of each learner per dispatch; found out if not given.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
-    quanta: Option<u32>,
+    iterations: Option<u32>,
 }
 
 impl BackendArguments {
     /// Opens the backend and says what it is.
     pub(super) fn open(&self) -> Result<Box<dyn Backend>, BackendError> {
-        let options = GpuOptions { adapter: self.adapter.clone(), quanta: self.quanta, ..GpuOptions::default() };
+        let options =
+            GpuOptions { adapter: self.adapter.clone(), iterations: self.iterations, ..GpuOptions::default() };
         match self.backend {
             Choice::Gpu => Ok(Box::new(GpuBackend::new(&options)?)),
             // An adapter that is asked for by name is wanted, even where `auto` would not choose it.
@@ -55,6 +56,6 @@ impl BackendArguments {
     }
 
     fn cpu(&self) -> Result<Box<dyn Backend>, BackendError> {
-        Ok(Box::new(CpuBackend::new(self.threads as usize, self.quanta)?))
+        Ok(Box::new(CpuBackend::new(self.threads as usize, self.iterations)?))
     }
 }

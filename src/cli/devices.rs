@@ -3,10 +3,10 @@
 use super::output::print;
 use super::{Failure, exit_codes, parity};
 use crate::backend::gpu::adapter::adapters;
-use crate::backend::gpu::canary::SAFE_TURNS;
+use crate::backend::gpu::arithmetic_check::ANSWER_WORDS;
 use crate::backend::gpu::conformance::{QUESTIONS, Verdict, examine};
 use crate::backend::gpu::device::{Device, is_software, takes_spirv};
-use crate::backend::gpu::probe::ANSWER_WORDS;
+use crate::backend::gpu::loop_limit::SAFE_TURNS;
 use crate::backend::gpu::{GpuOptions, adapter};
 use serde::Serialize;
 use std::fmt::Write;

@@ -3,10 +3,10 @@
 use crate::backend::BackendError;
 use crate::bench::BenchError;
 use crate::config::ConfigError;
-use crate::experiment::group::SetupError;
-use crate::experiment::run::RunError;
-use crate::record::RecordError;
 use crate::report::ReportError;
+use crate::run_folder::RecordError;
+use crate::train::batch_group::SetupError;
+use crate::train::run::RunError;
 
 /// An error as the user sees it.
 #[derive(Debug, thiserror::Error)]

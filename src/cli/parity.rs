@@ -6,7 +6,7 @@ use crate::backend::cpu::CpuBackend;
 use crate::backend::gpu::adapter::{adapters, choose};
 use crate::backend::gpu::{GpuBackend, GpuOptions};
 use crate::config::{Overrides, load};
-use crate::experiment::parity::{Sample, Work};
+use crate::train::parity::{Sample, Work};
 use std::path::Path;
 
 /// Does the same work on the CPU and on every adapter, and prints how the bytes compare.

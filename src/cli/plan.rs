@@ -4,10 +4,10 @@ use super::count;
 use super::output::tell;
 use crate::backend::{Backend, BackendError};
 use crate::config::plan::{Design, Plan};
-use crate::experiment::cohorts::stages;
-use crate::experiment::forecast::{Forecast, forecast, measure, parts_bytes};
-use crate::experiment::group::Group;
-use crate::experiment::run::Options;
+use crate::train::batch_group::Group;
+use crate::train::estimate::{Forecast, forecast, measure, parts_bytes};
+use crate::train::run::Options;
+use crate::train::schedule::stages;
 use std::collections::BTreeSet;
 use std::time::Duration;
 

@@ -2,8 +2,8 @@
 
 use super::output::tell;
 use super::signals::Signals;
-use crate::experiment::run::Observer;
-use crate::record::{Failure, RecordError};
+use crate::run_folder::{Failure, RecordError};
+use crate::train::run::Observer;
 use indicatif::{HumanCount, HumanDuration, ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::path::Path;

@@ -7,11 +7,11 @@ use super::signals::Signals;
 use super::{Failure, exit_codes, plan};
 use crate::config::plan::Plan;
 use crate::config::{Overrides, load};
-use crate::experiment::group::groups;
-use crate::experiment::run::{Options, run as run_experiment};
-use crate::record::disk::{Disk, FileSystem};
-use crate::record::{Provenance, RunFolder, State, folder, tables};
 use crate::report;
+use crate::run_folder::file_system::{Disk, FileSystem};
+use crate::run_folder::{Provenance, RunFolder, State, folder, tables};
+use crate::train::batch_group::groups;
+use crate::train::run::{Options, run as run_experiment};
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -28,7 +28,7 @@ use std::time::{Duration, Instant, SystemTime};
     "  skilltree run configs/docking.toml --set learning.rate=0.01 --out runs/fast\n",
     "  skilltree run configs/thresholds.toml --dry-run\n",
     "  skilltree run configs/sweep.toml --arm taught-adam --point 3 --seeds 1 --out runs/one\n\n",
-    "No choice of backend, threads, cohort, quanta or checkpoints changes a byte of the results. A run can be stopped at ",
+    "No choice of backend, threads, cohort, iterations or checkpoints changes a byte of the results. A run can be stopped at ",
     "any time: Ctrl-C and SIGTERM save everything first, and the same command goes on. After a crash it goes on from the ",
     "last checkpoint.\n\n",
     exit_codes!()

@@ -1,16 +1,16 @@
 //! The experimental conditions: the base config with each arm's own table laid over it.
 
-use super::error::{ConfigError, list, nearest, suggest};
 use super::hierarchy::{self, Link};
 use super::learning::Idle;
 use super::plan::{Arm, Skill};
-use super::read::{Item, Table, is_name};
 use super::skill::Reader;
-use super::spread::Base;
 use super::sweep::Sweep;
-use super::tree::{Entry, Node};
+use super::sweep::expand::Base;
 use super::worlds::Worlds;
 use super::{children, keys, mirror, robot, set, teacher};
+use crate::toml::document::{Entry, Node};
+use crate::toml::error::{ConfigError, list, nearest, suggest};
+use crate::toml::reader::{Item, Table, is_name};
 use std::collections::BTreeSet;
 
 /// Name of the only arm of a config that has no `[arm.NAME]`.

@@ -1,11 +1,11 @@
 //! What a skill chooses among, and how.
 
-use super::error::{ConfigError, suggest};
 use super::keys;
 use super::plan::{Action, Child, Choice, Persistence, Skill, Threshold};
-use super::read::{Item, Section, argument};
-use super::tree::Value;
-use crate::learner::layout::MAX_CHILDREN;
+use crate::layout::MAX_CHILDREN;
+use crate::toml::document::Value;
+use crate::toml::error::{ConfigError, suggest};
+use crate::toml::reader::{Item, Section, argument};
 
 /// Reads the children, with where each is written. A skill is numbered by its place in `skills`.
 pub(super) fn read<'a>(item: &Item<'a>, skills: &[&str]) -> Result<Vec<(Child, Item<'a>)>, ConfigError> {

@@ -1,12 +1,12 @@
 //! Which skills an arm trains, and in what order: the tree below its root, children before parents.
 
 use super::children;
-use super::error::{ConfigError, suggest};
 use super::keys;
 use super::plan::{Action, Child};
-use super::read::{Item, Section, Table, is_name};
-use super::tree::Value;
-use crate::learner::layout::{MAX_DEPTH, MAX_SKILLS};
+use crate::layout::{MAX_DEPTH, MAX_SKILLS};
+use crate::toml::document::Value;
+use crate::toml::error::{ConfigError, suggest};
+use crate::toml::reader::{Item, Section, Table, is_name};
 
 /// What a skill is made of. Skills are numbered by their places in the file.
 #[derive(Debug)]

@@ -1,10 +1,10 @@
 //! What a skill's nets see.
 
-use super::error::ConfigError;
 use super::keys;
 use super::plan::{Input, Skill};
-use super::read::{Item, argument};
-use crate::learner::layout::{MAX_GROUPS, MAX_INPUTS};
+use crate::layout::{MAX_GROUPS, MAX_INPUTS};
+use crate::toml::error::ConfigError;
+use crate::toml::reader::{Item, argument};
 use crate::world::World;
 use std::mem::discriminant;
 

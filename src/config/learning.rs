@@ -1,10 +1,10 @@
 //! The keys of `learning`, for one skill of one arm.
 
-use super::error::ConfigError;
 use super::keys;
 use super::plan::{Backup, Learning, Optimiser};
-use super::read::{Item, Section};
-use super::tree::Node;
+use crate::toml::document::Node;
+use crate::toml::error::ConfigError;
+use crate::toml::reader::{Item, Section};
 use std::sync::Arc;
 
 /// Keys that only the other optimiser reads, as found: an arm may leave them alone, but not all arms.

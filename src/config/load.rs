@@ -5,13 +5,14 @@
 //! arm's: what names the skill is more specific.
 
 use super::arms::Arms;
-use super::error::ConfigError;
 use super::keys::{self, Key};
 use super::plan::{Evaluate, Plan};
-use super::read::{Item, Section, Table};
-use super::tree::{Node, Origin, SWEEP, Source, Value};
 use super::worlds::Worlds;
-use super::{alter, seeds, set, sweep, write};
+use super::{seeds, set, sweep, transfer};
+use crate::toml::document::{Node, Origin, SWEEP, Source, Value};
+use crate::toml::error::ConfigError;
+use crate::toml::printer;
+use crate::toml::reader::{Item, Section, Table};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -87,7 +88,7 @@ pub fn load(path: &Path, overrides: &Overrides) -> Result<Plan, ConfigError> {
     let arms = Arms { base: &base, own: own.as_ref(), tested_at: &evaluate.at };
     let arms = arms.read(&section.0, chosen.as_ref(), sweep.as_ref(), &mut worlds)?;
     let alterations = match &altered {
-        Some(altered) => alter::read(altered, &base, arms.all(), &mut worlds)?,
+        Some(altered) => transfer::read(altered, &base, arms.all(), &mut worlds)?,
         None => Vec::new(),
     };
     let title = section.required(&keys::TITLE, "\"...\"")?.text()?.to_owned();
@@ -187,5 +188,5 @@ fn resolve(mut base: Node, (name, world): (&str, &str), groups: [(&str, Option<N
             base.put(key, group);
         }
     }
-    format!("# Resolved by skilltree: defaults, config file and command line together.\n{}", write::document(&base))
+    format!("# Resolved by skilltree: defaults, config file and command line together.\n{}", printer::document(&base))
 }

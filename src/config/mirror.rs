@@ -1,9 +1,9 @@
 //! Skills that are the mirror image of another one and use its nets.
 
-use super::error::ConfigError;
 use super::inputs;
 use super::plan::{Child, Event, Input, Skill};
-use super::read::Item;
+use crate::toml::error::ConfigError;
+use crate::toml::reader::Item;
 
 /// Whether a mirror shows an input as another reading of the same kind.
 fn mirrored(input: &Input) -> bool {

@@ -6,10 +6,8 @@
 //! `worlds` the floor plans,
 //! `sweep` the points at which arms are run. [`load()`] puts the layers together.
 
-mod alter;
 mod arms;
 mod children;
-pub mod error;
 mod hierarchy;
 mod inputs;
 pub mod keys;
@@ -17,18 +15,15 @@ mod learning;
 mod load;
 mod mirror;
 pub mod plan;
-pub(crate) mod read;
 mod robot;
 mod seeds;
 mod set;
 mod skill;
-mod spread;
 mod sweep;
 mod teacher;
-pub(crate) mod tree;
+mod transfer;
 mod worlds;
-mod write;
 
-pub use error::{ConfigError, Place};
+pub use crate::toml::{ConfigError, Place};
 pub use load::{Overrides, load};
 pub use seeds::parse_seeds;

@@ -1,7 +1,7 @@
 //! What a config file says, checked and complete: the [`Plan`].
 //!
 //! Nothing after the config stage looks at TOML again. Every derived size is computed once, from the
-//! plan, by [`crate::learner`].
+//! plan, by [`crate::layout`].
 
 mod skill;
 mod sweep;

@@ -1,9 +1,9 @@
 //! The keys of `robot`: noise, what a robot remembers, and what counts as beside a wall.
 
-use super::error::ConfigError;
 use super::keys;
 use super::plan::{Noise, NoiseKind, Robot};
-use super::read::{Item, Section};
+use crate::toml::error::ConfigError;
+use crate::toml::reader::{Item, Section};
 
 /// Reads a complete `robot` table.
 pub(super) fn read(item: &Item<'_>) -> Result<(Noise, Robot), ConfigError> {

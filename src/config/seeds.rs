@@ -1,8 +1,8 @@
 //! Lists of seeds, as typed.
 
-use super::error::{ConfigError, Place};
-use super::read::Item;
-use super::tree::Value;
+use crate::toml::document::Value;
+use crate::toml::error::{ConfigError, Place};
+use crate::toml::reader::Item;
 
 /// Most seeds of one run. Each is a learner per arm.
 const MOST: usize = 1 << 20;

@@ -1,8 +1,8 @@
 //! `--set a.b=v`: values that the command line lays over a config file.
 
-use super::error::{ConfigError, Place, suggest};
-use super::read::is_name;
-use super::tree::{Entry, Node, Origin, Source, Value};
+use crate::toml::document::{Entry, Node, Origin, Source, Value};
+use crate::toml::error::{ConfigError, Place, suggest};
+use crate::toml::reader::is_name;
 use std::sync::Arc;
 
 const SHAPE: &str = "write --set key=value, such as --set learning.rate=0.01";

@@ -1,15 +1,15 @@
 //! The keys of one `[skill.NAME]` table.
 
-use super::error::{ConfigError, suggest};
 use super::hierarchy::Link;
 use super::keys;
 use super::learning::{self, Idle};
 use super::plan::{Child, Event, Learning, Skill};
-use super::read::{Item, Section};
-use super::tree::{Node, Value};
 use super::worlds::Ground;
 use super::{children, inputs, mirror};
-use crate::learner::layout::MAX_STARTS;
+use crate::layout::MAX_STARTS;
+use crate::toml::document::{Node, Value};
+use crate::toml::error::{ConfigError, suggest};
+use crate::toml::reader::{Item, Section};
 use crate::world::World;
 
 /// What the skills of an arm are read with, besides their own tables.

@@ -1,9 +1,9 @@
 //! The keys of `teacher`.
 
-use super::error::ConfigError;
 use super::keys;
 use super::plan::Teacher;
-use super::read::{Item, Section};
+use crate::toml::error::ConfigError;
+use crate::toml::reader::{Item, Section};
 
 /// Reads a complete `teacher` table.
 pub(super) fn read(item: &Item<'_>) -> Result<Teacher, ConfigError> {

@@ -1,10 +1,10 @@
 //! The floor plans that a config names, each read once.
 
-use super::error::ConfigError;
 use super::keys;
 use super::plan::PlacedWorld;
-use super::read::Item;
-use super::tree::{Node, Value};
+use crate::toml::document::{Node, Value};
+use crate::toml::error::ConfigError;
+use crate::toml::reader::Item;
 use crate::world::{self, World};
 use std::cell::RefCell;
 use std::collections::BTreeMap;

@@ -95,7 +95,7 @@ pub fn is_number(x: f32) -> bool {
 /// The nets' symmetric sigmoid, tanh(`x`), as a quotient of polynomials. Absolute error below 5e-7. What is no number
 /// is handed on, so that it is found out and not taken for 1.
 #[inline(always)]
-pub fn squash(x: f32) -> f32 {
+pub fn tanh(x: f32) -> f32 {
     // Beyond, tanh is 1 to f32's last place but one.
     let held = if x > -7.9 { x } else { -7.9 };
     let b = if held < 7.9 { held } else { 7.9 };
@@ -188,11 +188,11 @@ mod tests {
     #[test]
     fn squash_matches_f64() {
         for x in sweep(-20.0, 20.0, 200_000) {
-            assert!((f64::from(squash(x)) - f64::from(x).tanh()).abs() < 5.0e-7, "tanh({x})");
-            assert!(squash(x).abs() < 1.0 && squash(-x) == -squash(x));
+            assert!((f64::from(tanh(x)) - f64::from(x).tanh()).abs() < 5.0e-7, "tanh({x})");
+            assert!(tanh(x).abs() < 1.0 && tanh(-x) == -tanh(x));
         }
-        assert_eq!(squash(0.0), 0.0);
-        assert!(squash(f32::NAN).is_nan() && squash(f32::INFINITY) == f32::INFINITY && squash(f32::MAX) < 1.01);
+        assert_eq!(tanh(0.0), 0.0);
+        assert!(tanh(f32::NAN).is_nan() && tanh(f32::INFINITY) == f32::INFINITY && tanh(f32::MAX) < 1.01);
     }
 
     #[test]

@@ -5,5 +5,5 @@
 //! devices. Twins: `shaders/math/`.
 
 pub mod functions;
-pub mod lanes;
+pub mod reduce;
 pub mod rng;

@@ -3,52 +3,8 @@
 //! A draw is a pure function of (run seed, learner seed, trial, step, purpose, draw). Nothing is stored,
 //! so no draw depends on where, when or beside whom a learner runs.
 
-use crate::learner::layout::LANES;
-
-/// What a random number is for. The purpose is part of the counter, so streams never meet.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(u32)]
-pub enum Purpose {
-    /// Everything in one primitive step of training: the draw is the lane.
-    Step = 1,
-    /// Everything in one primitive step of a test.
-    Test = 2,
-    /// Where a training trial starts.
-    Start = 3,
-    /// Where a test trial starts.
-    TestStart = 4,
-    /// Which lesson is replayed.
-    Replay = 5,
-    /// Initial weights.
-    Init = 6,
-    /// Which lessons of the bank a learner is given.
-    Lesson = 7,
-    /// Steps under given actions: `probe` and the planner's demonstrations.
-    Given = 8,
-    /// One primitive step of the teacher.
-    Teacher = 9,
-    /// Where a demonstration starts.
-    TeacherStart = 10,
-    /// Resampling in statistics; never used by a kernel.
-    Statistics = 11,
-    /// Which steps between decisions are learned from.
-    Inner = 12,
-    /// Points of a sweep; never used by a kernel.
-    Sweep = 13,
-}
-
-/// Name and code of every purpose that a shader names.
-pub const PURPOSES: &[(&str, Purpose)] = &[
-    ("PURPOSE_STEP", Purpose::Step),
-    ("PURPOSE_TEST", Purpose::Test),
-    ("PURPOSE_START", Purpose::Start),
-    ("PURPOSE_TEST_START", Purpose::TestStart),
-    ("PURPOSE_REPLAY", Purpose::Replay),
-    ("PURPOSE_INIT", Purpose::Init),
-    ("PURPOSE_LESSON", Purpose::Lesson),
-    ("PURPOSE_GIVEN", Purpose::Given),
-    ("PURPOSE_INNER", Purpose::Inner),
-];
+use crate::layout::LANES;
+pub use crate::layout::purpose::{PURPOSES, Purpose};
 
 /// The stream of one trial: everything in a counter but the draw.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -112,46 +68,46 @@ pub fn draws(stream: Stream, first: u32) -> [[u32; BATCH]; 4] {
     words
 }
 
-/// Draws that [`Dice`] holds.
-pub const DICE: usize = 16;
+/// Draws that [`StepRandom`] holds.
+pub const DRAWS: usize = 16;
 
 /// The random words of one primitive step: entry `i` holds draw number `i`.
 ///
 /// Rays share the first six draws, a word each; the light's bearings share six that are made where the light is seen
-/// ([`bearing_words`]). The rest is named in [`crate::skill::observe`].
+/// ([`bearing_words`]). The rest is named in [`crate::env::observe`].
 #[derive(Debug, Clone, Copy)]
-pub struct Dice {
+pub struct StepRandom {
     /// What else is drawn from.
     pub stream: Stream,
     /// First word of every draw.
-    pub x: [u32; DICE],
+    pub x: [u32; DRAWS],
     /// Second word.
-    pub y: [u32; DICE],
+    pub y: [u32; DRAWS],
     /// Third word.
-    pub z: [u32; DICE],
+    pub z: [u32; DRAWS],
     /// Fourth word.
-    pub w: [u32; DICE],
+    pub w: [u32; DRAWS],
 }
 
-/// Rolls the dice of one primitive step.
+/// Rolls the random of one primitive step.
 #[inline(always)]
-pub fn roll(stream: Stream) -> Dice {
-    let mut dice = Dice { stream, x: [0; DICE], y: [0; DICE], z: [0; DICE], w: [0; DICE] };
+pub fn draw_step(stream: Stream) -> StepRandom {
+    let mut random = StepRandom { stream, x: [0; DRAWS], y: [0; DRAWS], z: [0; DRAWS], w: [0; DRAWS] };
     let low = draws(stream, 0);
     let high = draws(stream, BATCH as u32);
     for i in 0..BATCH {
-        dice.x[i] = low[0][i];
-        dice.y[i] = low[1][i];
-        dice.z[i] = low[2][i];
-        dice.w[i] = low[3][i];
+        random.x[i] = low[0][i];
+        random.y[i] = low[1][i];
+        random.z[i] = low[2][i];
+        random.w[i] = low[3][i];
     }
     for i in 0..BATCH {
-        dice.x[BATCH + i] = high[0][i];
-        dice.y[BATCH + i] = high[1][i];
-        dice.z[BATCH + i] = high[2][i];
-        dice.w[BATCH + i] = high[3][i];
+        random.x[BATCH + i] = high[0][i];
+        random.y[BATCH + i] = high[1][i];
+        random.z[BATCH + i] = high[2][i];
+        random.w[BATCH + i] = high[3][i];
     }
-    dice
+    random
 }
 
 /// Bearings that share a word of their draws.
@@ -245,8 +201,8 @@ mod tests {
     #[test]
     fn every_bearing_has_a_word_of_its_own() {
         let stream = Stream { key: [1, 2], skill: 3, trial: 4, step: 5, purpose: Purpose::Step as u32 };
-        let dice = roll(stream);
-        let sonar = bearing_words(&dice.x, &dice.y, &dice.z, &dice.w);
+        let random = draw_step(stream);
+        let sonar = bearing_words(&random.x, &random.y, &random.z, &random.w);
         let light = draws(stream, 16);
         let light = bearing_words(&light[0], &light[1], &light[2], &light[3]);
         let mut seen = std::collections::HashSet::new();
@@ -256,9 +212,9 @@ mod tests {
             assert_eq!((sonar[place], light[place]), (own(0), own(16)));
             assert!(seen.insert(sonar[place]) && seen.insert(light[place]), "bearing {bearing}");
         }
-        for i in 6..DICE {
+        for i in 6..DRAWS {
             let words = draw(stream, i as u32);
-            assert_eq!([dice.x[i], dice.y[i], dice.z[i], dice.w[i]], words);
+            assert_eq!([random.x[i], random.y[i], random.z[i], random.w[i]], words);
             assert!(words.iter().all(|word| seen.insert(*word)), "draw {i}");
         }
     }

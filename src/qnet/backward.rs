@@ -1,10 +1,10 @@
 //! One step of error back-propagation through one child's net (paper, section I, step 2).
 
 use super::forward::{FEW, lanes_of, net_of};
-use crate::learner::layout::{LANES, MAX_INPUTS, MAX_ROWS, Settings, SkillPlan};
-use crate::learner::memory::Scratch;
+use crate::env::workgroup::Scratch;
+use crate::layout::{HyperParams, LANES, MAX_INPUTS, MAX_ROWS, SkillShape};
 use crate::math::functions::{flush, reciprocal, reciprocal_sqrt, square_root};
-use crate::math::lanes::{Lanes, lanes_sum};
+use crate::math::reduce::{Lanes, lanes_sum};
 
 /// Gradient descent with momentum.
 pub const OPTIMISER_SGD: u32 = 0;
@@ -33,7 +33,7 @@ pub struct Errors {
 pub fn errors(
     nets: &[f32],
     scratch: &Scratch,
-    plan: &SkillPlan,
+    plan: &SkillShape,
     net: u32,
     number: u32,
     child: u32,
@@ -52,7 +52,7 @@ pub fn errors(
 
 /// Ascent direction of one row of weights of net `number`, for its output `output`.
 #[inline(always)]
-pub fn gradient(scratch: &Scratch, plan: &SkillPlan, number: u32, output: u32, row: u32, errors: &Errors) -> Lanes {
+pub fn gradient(scratch: &Scratch, plan: &SkillShape, number: u32, output: u32, row: u32, errors: &Errors) -> Lanes {
     let count = plan.inputs;
     let last = count + 1 + plan.outputs;
     let mut slope = errors.hidden;
@@ -87,8 +87,8 @@ pub fn gradient(scratch: &Scratch, plan: &SkillPlan, number: u32, output: u32, r
 pub fn paces<const UNITS: usize>(
     nets: &mut [f32],
     scratch: &mut Scratch,
-    plan: &SkillPlan,
-    settings: &Settings,
+    plan: &SkillShape,
+    params: &HyperParams,
     net: u32,
     (number, output): (u32, u32),
     errors: &Errors,
@@ -100,11 +100,11 @@ pub fn paces<const UNITS: usize>(
         below[lane] = errors.hidden[lane] * errors.hidden[lane];
         above[lane] = activation * activation;
     }
-    let hidden = lanes_sum(&below) * settings.unit_share;
-    let activation = lanes_sum(&above) * settings.unit_share;
+    let hidden = lanes_sum(&below) * params.unit_share;
+    let activation = lanes_sum(&above) * params.unit_share;
     let count = plan.inputs as usize;
     let last = count + 1 + plan.outputs as usize;
-    let rest2 = 1.0 - settings.beta2;
+    let rest2 = 1.0 - params.beta2;
     let mut inputs = [0.0; MAX_ROWS];
     inputs[..MAX_INPUTS].copy_from_slice(&scratch.inputs);
     let squares = &mut nets[(net + 2 * plan.rows * LANES as u32) as usize..][..MAX_ROWS];
@@ -122,9 +122,9 @@ pub fn paces<const UNITS: usize>(
             let factor = if row <= count { x } else { out };
             let above = if row < last { activation } else { 1.0 };
             let alike = if row <= count { hidden } else { above };
-            moved[lane] = flush(settings.beta2 * moved[lane] + rest2 * (factor * factor * alike));
+            moved[lane] = flush(params.beta2 * moved[lane] + rest2 * (factor * factor * alike));
             factors[lane] = factor;
-            paces[lane] = rate * reciprocal_sqrt(moved[lane] + settings.epsilon2);
+            paces[lane] = rate * reciprocal_sqrt(moved[lane] + params.epsilon2);
         }
         squares[block..block + ROW_BLOCK].copy_from_slice(&moved);
         scratch.row_factor[block..block + ROW_BLOCK].copy_from_slice(&factors);
@@ -134,9 +134,9 @@ pub fn paces<const UNITS: usize>(
 
 /// Learning rate of a trial: it falls linearly over the first trials.
 #[inline(always)]
-pub fn learning_rate(settings: &Settings, trial: u32) -> f32 {
-    let risen = if trial < settings.rate_trials { trial } else { settings.rate_trials };
-    settings.rate * (1.0 - settings.rate_fall * risen as f32)
+pub fn learning_rate(params: &HyperParams, trial: u32) -> f32 {
+    let risen = if trial < params.rate_trials { trial } else { params.rate_trials };
+    params.rate * (1.0 - params.rate_fall * risen as f32)
 }
 
 /// The first numbers of a row, as a value: they are loaded, computed and stored together.
@@ -172,8 +172,8 @@ fn turn<const UNITS: usize>(
 fn learn<const UNITS: usize>(
     nets: &mut [f32],
     scratch: &mut Scratch,
-    skill: &SkillPlan,
-    settings: &Settings,
+    skill: &SkillShape,
+    params: &HyperParams,
     base: u32,
     (number, output): (u32, u32),
     found: &Errors,
@@ -182,10 +182,10 @@ fn learn<const UNITS: usize>(
     let net = net_of(skill, base, number);
     let rows = skill.rows;
     let slab = rows * LANES as u32;
-    let beta1 = settings.beta1;
-    let beta2 = settings.beta2;
-    let epsilon2 = settings.epsilon2;
-    if settings.optimiser == OPTIMISER_SGD {
+    let beta1 = params.beta1;
+    let beta2 = params.beta2;
+    let epsilon2 = params.epsilon2;
+    if params.optimiser == OPTIMISER_SGD {
         let (weights, velocities) = nets[net as usize..(net + 2 * slab) as usize].split_at_mut(slab as usize);
         let weights = weights.as_chunks_mut::<LANES>().0;
         let velocities = velocities.as_chunks_mut::<LANES>().0;
@@ -209,8 +209,8 @@ fn learn<const UNITS: usize>(
         nets[clock] = first;
         nets[clock + CLOCK_SECOND as usize] = second;
         let rest1 = 1.0 - beta1;
-        if settings.optimiser == OPTIMISER_ADAM_ROWS {
-            paces::<UNITS>(nets, scratch, skill, settings, net, (number, output), found, rate);
+        if params.optimiser == OPTIMISER_ADAM_ROWS {
+            paces::<UNITS>(nets, scratch, skill, params, net, (number, output), found, rate);
             let count = skill.inputs as usize;
             let (weights, means) = nets[net as usize..(net + 2 * slab) as usize].split_at_mut(slab as usize);
             let weights = weights.as_chunks_mut::<LANES>().0;
@@ -260,8 +260,8 @@ fn learn<const UNITS: usize>(
 pub fn backward(
     nets: &mut [f32],
     scratch: &mut Scratch,
-    skill: &SkillPlan,
-    settings: &Settings,
+    skill: &SkillShape,
+    params: &HyperParams,
     base: u32,
     child: u32,
     delta: f32,
@@ -271,9 +271,9 @@ pub fn backward(
     let net = net_of(skill, base, number);
     let found = errors(nets, scratch, skill, net, number, child, delta);
     let own = (number, child - number);
-    if lanes_of(settings.hidden) == FEW {
-        learn::<FEW>(nets, scratch, skill, settings, base, own, &found, pace);
+    if lanes_of(params.hidden) == FEW {
+        learn::<FEW>(nets, scratch, skill, params, base, own, &found, pace);
     } else {
-        learn::<LANES>(nets, scratch, skill, settings, base, own, &found, pace);
+        learn::<LANES>(nets, scratch, skill, params, base, own, &found, pace);
     }
 }

@@ -1,9 +1,9 @@
 //! Q-values of every child.
 
-use crate::learner::layout::{LANES, MAX_CHILDREN, MAX_INPUTS, MAX_ROWS, Settings, SkillPlan};
-use crate::learner::memory::Scratch;
-use crate::math::functions::squash;
-use crate::math::lanes::{Lanes, lanes_sums};
+use crate::env::workgroup::Scratch;
+use crate::layout::{HyperParams, LANES, MAX_CHILDREN, MAX_INPUTS, MAX_ROWS, SkillShape};
+use crate::math::functions::tanh;
+use crate::math::reduce::{Lanes, lanes_sums};
 
 /// Lanes that do for a net of few hidden units: half of them.
 pub const FEW: usize = 16;
@@ -16,7 +16,7 @@ pub fn lanes_of(hidden: u32) -> usize {
 
 /// Which of a skill's inputs are bits: those of light and bumpers.
 #[inline(always)]
-pub fn bits_of(skill: &SkillPlan) -> u64 {
+pub fn bits_of(skill: &SkillShape) -> u64 {
     (u64::from(skill.bits_high) << 32) | u64::from(skill.bits_low)
 }
 
@@ -25,13 +25,13 @@ pub fn bits_of(skill: &SkillPlan) -> u64 {
 /// Between two nets half a row stays free. That is a line of the CPU's cache: nets of few units, which use the first half
 /// of each row, would otherwise share every other line and leave the rest idle.
 #[inline(always)]
-pub fn net_of(skill: &SkillPlan, base: u32, net: u32) -> u32 {
+pub fn net_of(skill: &SkillShape, base: u32, net: u32) -> u32 {
     base + skill.nets_offset + net * (3 * skill.rows * LANES as u32 + FEW as u32)
 }
 
 /// The rows of net number `net`, and what lies behind them.
 #[inline(always)]
-fn rows_of<'a>(nets: &'a [f32], skill: &SkillPlan, base: u32, net: u32) -> &'a [Lanes; MAX_ROWS] {
+fn rows_of<'a>(nets: &'a [f32], skill: &SkillShape, base: u32, net: u32) -> &'a [Lanes; MAX_ROWS] {
     let rows = nets[net_of(skill, base, net) as usize..].as_chunks::<LANES>().0;
     rows.first_chunk().expect("room for the most rows")
 }
@@ -51,7 +51,7 @@ fn added<const UNITS: usize>(sums: [f32; UNITS], weights: &Lanes, x: f32) -> [f3
 /// `ABREAST` nets are summed side by side, so that one need not wait for the other's sum. Bits that are not set are
 /// passed over: of those of light few are.
 #[inline(always)]
-fn layer<const UNITS: usize, const ABREAST: usize>(nets: &[f32], scratch: &mut Scratch, skill: &SkillPlan, base: u32) {
+fn layer<const UNITS: usize, const ABREAST: usize>(nets: &[f32], scratch: &mut Scratch, skill: &SkillShape, base: u32) {
     let inputs = skill.inputs as usize;
     let outputs = skill.outputs as usize;
     let used = ((u64::MAX >> (MAX_INPUTS - inputs)) & !bits_of(skill)) | scratch.set;
@@ -80,7 +80,7 @@ fn layer<const UNITS: usize, const ABREAST: usize>(nets: &[f32], scratch: &mut S
             let number = numbers[beside] as usize;
             let mut activations = [0.0; LANES];
             for lane in 0..UNITS {
-                activations[lane] = squash(sums[beside][lane]);
+                activations[lane] = tanh(sums[beside][lane]);
             }
             for output in 0..outputs {
                 let mut parts = [0.0; UNITS];
@@ -96,8 +96,8 @@ fn layer<const UNITS: usize, const ABREAST: usize>(nets: &[f32], scratch: &mut S
 
 /// Computes `hidden` and `q` of every child from `inputs`.
 #[inline(always)]
-pub fn forward(nets: &[f32], scratch: &mut Scratch, skill: &SkillPlan, settings: &Settings, base: u32) {
-    let lanes = lanes_of(settings.hidden);
+pub fn forward(nets: &[f32], scratch: &mut Scratch, skill: &SkillShape, params: &HyperParams, base: u32) {
+    let lanes = lanes_of(params.hidden);
     if lanes == FEW {
         layer::<FEW, 6>(nets, scratch, skill, base);
     } else {
@@ -112,6 +112,6 @@ pub fn forward(nets: &[f32], scratch: &mut Scratch, skill: &SkillPlan, settings:
         sums[child] = scratch.partials[child][0] + bias;
     }
     for child in 0..MAX_CHILDREN {
-        scratch.q[child] = squash(sums[child]);
+        scratch.q[child] = tanh(sums[child]);
     }
 }

@@ -1,30 +1,30 @@
 //! Initial weights. Made once on the host for both backends, so it has no twin in WGSL.
 
-use crate::learner::layout::{LANES, Settings, SkillPlan};
+use crate::layout::{HyperParams, LANES, SkillShape};
 use crate::math::rng::{Purpose, Stream, draw, unit};
 use crate::qnet::backward::CLOCK_SECOND;
 use crate::qnet::forward::net_of;
 
 /// Fills one skill's nets: weights of the units in use uniform in plus or minus `init`, everything else 0,
 /// the clocks 1. `skill_number` keeps the skills' random numbers apart.
-pub fn init(nets: &mut [f32], skill: &SkillPlan, skill_number: u32, settings: &Settings) {
+pub fn init(nets: &mut [f32], skill: &SkillShape, skill_number: u32, params: &HyperParams) {
     for child in 0..skill.nets {
         let net = net_of(skill, 0, child) as usize;
         for row in 0..skill.rows {
             for lane in 0..LANES as u32 {
                 let output_biases = row == skill.inputs + 1 + skill.outputs;
-                if lane >= settings.hidden || (output_biases && lane >= skill.outputs) {
+                if lane >= params.hidden || (output_biases && lane >= skill.outputs) {
                     continue;
                 }
                 let stream = Stream {
-                    key: [settings.run_seed, settings.learner_seed],
+                    key: [params.run_seed, params.learner_seed],
                     skill: skill_number,
                     trial: child,
                     step: row,
                     purpose: Purpose::Init as u32,
                 };
                 let word = draw(stream, lane)[0];
-                nets[net + (row as usize) * LANES + lane as usize] = (unit(word) * 2.0 - 1.0) * settings.init;
+                nets[net + (row as usize) * LANES + lane as usize] = (unit(word) * 2.0 - 1.0) * params.init;
             }
         }
         let clock = (skill.clock_offset + child) as usize;

@@ -6,7 +6,7 @@ use super::stairs::{self, Stair, Staircase};
 use super::statistics::{BAND_RESAMPLES, bootstrap, mean, performance_profile, profile_band};
 use super::summary::{Cell, Score, Series, Skill, Summary};
 use super::{floor, trace};
-use crate::record::{PlaceReading, Trajectory};
+use crate::run_folder::{PlaceReading, Trajectory};
 use crate::world::World;
 use rayon::prelude::*;
 

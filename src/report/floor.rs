@@ -1,7 +1,7 @@
 //! The floor plan, and what the sensors read at a place, drawn as in the paper's Figure 1.
 
 use super::canvas::{Anchor, Canvas, GREY, INK, PALE};
-use crate::record::PlaceReading;
+use crate::run_folder::PlaceReading;
 use crate::world::{Light, Pose, ROBOT_RADIUS, Rect, World};
 use glam::Vec2;
 use plotters::style::RGBColor;

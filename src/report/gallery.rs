@@ -5,7 +5,7 @@ use super::comparison::Comparison;
 use super::figures::{self, Drawing};
 use super::results::Results;
 use super::{figure2, rooms, sweep};
-use crate::record::{FinishedRun, RecordError, Trajectory, folder, places, trajectories};
+use crate::run_folder::{FinishedRun, RecordError, Trajectory, folder, sensor_readings, trajectories};
 use crate::world::{World, load};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -34,7 +34,7 @@ pub fn draw(run: &FinishedRun, results: &Results) -> Result<Vec<Drawing>, Report
         drawings.par_extend(shown.into_par_iter().map(|(trajectory, world)| figures::way(trajectory, world)));
     }
     drawings.extend(figures::learning(&results.summary));
-    let readings = read(run, places::FILE, places::read_places)?;
+    let readings = read(run, sensor_readings::FILE, sensor_readings::read_places)?;
     for (file, world) in &worlds {
         drawings.extend(match file == folder::WORLD {
             true => figures::floor(world, &readings),

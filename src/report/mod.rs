@@ -27,8 +27,8 @@ pub mod trace;
 pub mod training;
 
 use crate::config::ConfigError;
-use crate::record::disk::{Disk, FileSystem};
-use crate::record::{FinishedRun, RecordError, atomic, folder};
+use crate::run_folder::file_system::{Disk, FileSystem};
+use crate::run_folder::{FinishedRun, RecordError, atomic, folder};
 use rayon::prelude::*;
 use results::Results;
 use std::path::{Path, PathBuf};

@@ -12,7 +12,7 @@ use super::statistics::{
 use super::summary::{Bound, Cell, Score, Series, Skill, Summary, paired};
 use super::text::EARLY_TRIALS;
 use super::{ReportError, alterations, figure2, rooms, sweep};
-use crate::record::FinishedRun;
+use crate::run_folder::FinishedRun;
 use minijinja::{AutoEscape, Environment, UndefinedBehavior, Value, context};
 use rayon::prelude::*;
 use std::path::PathBuf;

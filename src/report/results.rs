@@ -5,9 +5,9 @@ use super::claims::{self, Claim};
 use super::summary::{self, Diverged, Summary};
 use super::sweep::Swept;
 use super::training::{self, Training};
-use crate::record::failures::failures_of;
-use crate::record::sweep::{self, read_sweep};
-use crate::record::{Failure, FinishedRun, RecordError, tables};
+use crate::run_folder::failures::failures_of;
+use crate::run_folder::sweep::{self, read_sweep};
+use crate::run_folder::{Failure, FinishedRun, RecordError, tables};
 use std::path::Path;
 
 /// What tables and figures of learning are made from.

@@ -3,7 +3,7 @@
 use super::canvas::{Anchor, INK};
 use super::curves::COLORS;
 use super::floor::{Floor, SMALL};
-use crate::record::{Trajectory, TrajectoryPoint};
+use crate::run_folder::{Trajectory, TrajectoryPoint};
 use crate::world::{Pose, World};
 use glam::Vec2;
 use plotters::style::RGBColor;

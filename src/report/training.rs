@@ -2,7 +2,7 @@
 
 use super::statistics::{Interval, bootstrap_ratio, ratio};
 use super::summary::{Series, Summary};
-use crate::record::{Names, TrialRow};
+use crate::run_folder::{Names, TrialRow};
 use std::collections::BTreeMap;
 
 /// Trials that a point of a training curve sums.

@@ -4,5 +4,5 @@
 //! skill that is defined by events in any world: nothing in it is written for docking. Host only; it moves
 //! the robot with the same twins as the kernels, so what it plans for is what happens.
 
-pub mod bank;
-pub mod planner;
+pub mod demonstrations;
+pub mod value_iteration;

@@ -2,9 +2,9 @@
 
 use super::geometry::distance;
 use super::{Door, ROBOT_RADIUS, Rect, Room, Segment, World};
-use crate::config::ConfigError;
-use crate::config::read::Item;
-use crate::config::tree::Origin;
+use crate::toml::ConfigError;
+use crate::toml::document::Origin;
+use crate::toml::reader::Item;
 use glam::Vec2;
 
 /// Where the parts of a world were written, in the order of the world's own lists.

@@ -2,15 +2,15 @@
 //!
 //! Inches, x right, y up; headings in degrees, 0 = east, counter-clockwise.
 
-pub mod atlas;
 mod check;
 pub mod geometry;
 pub mod load;
 pub mod regions;
 mod solids;
+pub mod tables;
 
-pub use atlas::Atlas;
 pub use load::{load, parse};
+pub use tables::Tables;
 
 use glam::Vec2;
 

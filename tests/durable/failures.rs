@@ -5,18 +5,18 @@ use skilltree::backend::gpu::{GpuBackend, GpuOptions};
 use skilltree::backend::{Backend, BackendError, Cohort, Stop, Test};
 use skilltree::config::plan::Plan;
 use skilltree::config::{Overrides, load};
-use skilltree::experiment::failure::failure_of;
-use skilltree::experiment::group::{Group, groups};
-use skilltree::experiment::result::{LearnerResult, encode};
-use skilltree::experiment::run::{Observer, Options, run};
-use skilltree::experiment::train::train;
-use skilltree::learner::layout::{Cursor, Episode, LESSON_HEADER, Robot};
-use skilltree::learner::memory::Shared;
-use skilltree::learner::phase::{PHASE_FAILED, PHASE_REPLAY};
+use skilltree::env::workgroup::CohortData;
+use skilltree::layout::phase::{PHASE_FAILED, PHASE_REPLAY};
+use skilltree::layout::{Episode, LESSON_HEADER, LearnerState, Robot};
 use skilltree::qnet::forward::net_of;
-use skilltree::record::failures::{Failure, Number, failures_of};
-use skilltree::record::tables::{EVALUATIONS, TRIALS, read_evaluations, read_trials};
-use skilltree::record::{FinishedRun, Provenance, RunFolder};
+use skilltree::run_folder::failures::{Failure, Number, failures_of};
+use skilltree::run_folder::tables::{EVALUATIONS, TRIALS, read_evaluations, read_trials};
+use skilltree::run_folder::{FinishedRun, Provenance, RunFolder};
+use skilltree::train::batch::train;
+use skilltree::train::batch_group::{Group, groups};
+use skilltree::train::divergence::failure_of;
+use skilltree::train::result::{LearnerResult, encode};
+use skilltree::train::run::{Observer, Options, run};
 use std::ops::Range;
 use std::path::Path;
 use tempfile::TempDir;
@@ -52,10 +52,10 @@ impl Backend for Poisoner {
         self.inner.load(cohort)
     }
 
-    fn advance(&mut self, stop: Stop) -> Result<&[Cursor], BackendError> {
+    fn advance(&mut self, stop: Stop) -> Result<&[LearnerState], BackendError> {
         if let Some(trial) = self.before.filter(|trial| stop.trial > *trial) {
             let mut cohort = self.inner.memory()?.clone();
-            assert!(cohort.cursors.iter().all(|cursor| cursor.trial == trial));
+            assert!(cohort.states.iter().all(|state| state.trial == trial));
             cohort.nets[self.victim * cohort.nets_stride + self.word] = self.value;
             self.inner.load(cohort)?;
             self.before = None;
@@ -75,8 +75,8 @@ impl Backend for Poisoner {
         self.inner.memory()
     }
 
-    fn step(&mut self, shared: &Shared, robots: &mut [Robot], quanta: u32) -> Result<(), BackendError> {
-        self.inner.step(shared, robots, quanta)
+    fn step(&mut self, shared: &CohortData, robots: &mut [Robot], iterations: u32) -> Result<(), BackendError> {
+        self.inner.step(shared, robots, iterations)
     }
 }
 
@@ -203,18 +203,18 @@ fn what_the_last_update_spoils_is_found_before_the_test() {
         let mut backend = CpuBackend::new(1, Some(1)).expect("threads");
         backend.load(group.cohort(&plan, &group.learners(&plan))).expect("memory");
         let after = Stop { skill: 0, trial: 2 };
-        // All three replays of the second trial are over, one quantum later the learner would wait for its test.
-        let over = |cursor: &Cursor| {
-            (cursor.phase, cursor.trial, cursor.replay, cursor.replay_left) == (PHASE_REPLAY, 1, 3, 0)
+        // All three replays of the second trial are over, one iteration later the learner would wait for its test.
+        let over = |state: &LearnerState| {
+            (state.phase, state.trial, state.replay, state.replay_left) == (PHASE_REPLAY, 1, 3, 0)
         };
         while !over(&backend.advance(after).expect("it runs")[0]) {}
         let mut cohort = backend.memory().expect("memory").clone();
         cohort.nets[word] = f32::INFINITY;
         backend.load(cohort).expect("memory");
-        while !backend.advance(after).expect("it runs").iter().all(|cursor| after.holds(cursor)) {}
+        while !backend.advance(after).expect("it runs").iter().all(|state| after.holds(state)) {}
         let memory = backend.memory().expect("memory");
-        assert_eq!((memory.cursors[0].phase, memory.cursors[0].trial), (PHASE_FAILED, 2));
-        assert_ne!(memory.cursors[1].phase, PHASE_FAILED);
+        assert_eq!((memory.states[0].phase, memory.states[0].trial), (PHASE_FAILED, 2));
+        assert_ne!(memory.states[1].phase, PHASE_FAILED);
         let ids = group.learners(&plan);
         assert_eq!(failure_of(&plan, memory, 1, ids[1]), None);
         let failure = failure_of(&plan, memory, 0, ids[0]).expect("a failure");

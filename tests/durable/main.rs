@@ -49,7 +49,7 @@ fn text(output: &Output) -> String {
 
 /// Every file but those that say how and where the run was carried out.
 fn results(out: &Path) -> BTreeMap<String, Vec<u8>> {
-    skilltree::record::FinishedRun::read(out).unwrap();
+    skilltree::run_folder::FinishedRun::read(out).unwrap();
     let mut files = tree(out);
     assert!(!files.contains_key("checkpoint") && !files.contains_key("parts/"), "{:?}", files.keys());
     for name in ["manifest.json", "report.html", ".lock", ".skilltree"] {
@@ -90,7 +90,7 @@ fn signals_stop_a_run_that_goes_on_in_any_other_way() {
     let out = dir.path().join("run");
     let ways: [&[&str]; 4] = [
         &["--checkpoint", "0.2", "--threads", "1"],
-        &["--threads", "1", "--quanta", "700"],
+        &["--threads", "1", "--iterations", "700"],
         &["--cohort", "3", "--threads", "2"],
         &["--checkpoint", "3600"],
     ];

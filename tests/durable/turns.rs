@@ -13,11 +13,11 @@ fn a_large_cohort_moves_some_learners_at_a_time() {
     let mut backend = CpuBackend::new(2, Some(1)).expect("threads");
     backend.load(group.cohort(&plan, &group.learners(&plan))).expect("memory");
     let stop = Stop { skill: 0, trial: 1 };
-    let mut before = backend.memory().expect("memory").cursors.clone();
+    let mut before = backend.memory().expect("memory").states.clone();
     let (mut calls, mut moved_later) = (0, 0);
-    while !before.iter().all(|cursor| stop.holds(cursor)) {
+    while !before.iter().all(|state| stop.holds(state)) {
         let after = backend.advance(stop).expect("it runs").to_vec();
-        let waiting = before.iter().filter(|cursor| !stop.holds(cursor)).count();
+        let waiting = before.iter().filter(|state| !stop.holds(state)).count();
         let moved: Vec<usize> = (0..100).filter(|learner| before[*learner] != after[*learner]).collect();
         assert_eq!(moved.len(), waiting.min(64), "call {calls}");
         moved_later += usize::from(moved.iter().any(|learner| *learner >= 64));

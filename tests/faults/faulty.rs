@@ -1,7 +1,7 @@
 //! A disk of which one call fails.
 
 use super::memory::Memory;
-use skilltree::record::disk::{Disk, Kind, Lock, TryLockError, Writing};
+use skilltree::run_folder::file_system::{Disk, Kind, Lock, TryLockError, Writing};
 use std::ffi::OsString;
 use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};

@@ -4,7 +4,7 @@
 //! finding's number, given as `SKILLTREE_FUZZ_FROM` with a short time, brings it back.
 
 use super::meter::{Execution, executed, watch};
-use super::mutate::Dice;
+use super::mutate::StepRandom;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -54,7 +54,7 @@ impl Campaign {
 /// wrong with what it gave.
 pub(crate) fn campaign(
     name: &str,
-    mut make: impl FnMut(&mut Dice) -> Vec<u8>,
+    mut make: impl FnMut(&mut StepRandom) -> Vec<u8>,
     mut read: impl FnMut(&[u8]) -> Result<bool, String>,
 ) -> Campaign {
     let until = Instant::now() + Duration::from_secs(setting("SKILLTREE_FUZZ_SECONDS", 2));
@@ -68,7 +68,7 @@ pub(crate) fn campaign(
                 break;
             }
             current.store(number, Ordering::Relaxed);
-            let input = make(&mut Dice::new(number));
+            let input = make(&mut StepRandom::new(number));
             if let Some(finding) = campaign.execute(number, &input, &mut read) {
                 if !campaign.findings.contains_key(&finding) {
                     let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("fuzz-{name}-{number}"));

@@ -14,7 +14,7 @@ mod within;
 
 use campaign::campaign;
 use memory::Memory;
-use skilltree::record::disk::Disk;
+use skilltree::run_folder::file_system::Disk;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
@@ -46,7 +46,7 @@ fn file(name: &str) -> Vec<u8> {
 fn faults_are_found() {
     let seeds = [b"a = 1\nb = 22\n".to_vec()];
     let found = |read: fn(&[u8]) -> Result<bool, String>| {
-        let findings = campaign("broken", |dice| mutate::text(dice, &seeds), read).findings;
+        let findings = campaign("broken", |random| mutate::text(random, &seeds), read).findings;
         findings.into_keys().collect::<String>()
     };
     let panics = found(|input| {

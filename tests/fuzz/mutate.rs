@@ -1,14 +1,14 @@
 //! Inputs made from good ones: bytes, numbers and words are altered, lost, doubled and mixed.
 
 /// Random numbers (splitmix64): the same inputs in every run.
-pub(crate) struct Dice(u64);
+pub(crate) struct StepRandom(u64);
 
-impl Dice {
+impl StepRandom {
     pub(crate) fn new(seed: u64) -> Self {
         Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15))
     }
 
-    pub(crate) fn roll(&mut self) -> u64 {
+    pub(crate) fn draw_step(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -18,7 +18,7 @@ impl Dice {
 
     /// A number below `end`, and 0 if that is 0.
     pub(crate) fn below(&mut self, end: usize) -> usize {
-        (self.roll() % end.max(1) as u64) as usize
+        (self.draw_step() % end.max(1) as u64) as usize
     }
 
     pub(crate) fn pick<'a, T>(&mut self, list: &'a [T]) -> &'a T {
@@ -77,14 +77,14 @@ const NUMBERS: [&str; 22] = [
 ];
 
 /// One to four alterations of one of the seeds, byte by byte.
-pub(crate) fn bytes(dice: &mut Dice, seeds: &[Vec<u8>]) -> Vec<u8> {
-    let mut input = dice.pick(seeds).clone();
-    for _ in 0..=dice.below(4) {
-        let at = dice.below(input.len());
-        let range = dice.range(input.len());
-        match dice.below(9) {
-            0 if !input.is_empty() => input[at] ^= 1 << dice.below(8),
-            1 if !input.is_empty() => input[at] = *dice.pick(&[0, 1, 0x7f, 0x80, 0xff]),
+pub(crate) fn bytes(random: &mut StepRandom, seeds: &[Vec<u8>]) -> Vec<u8> {
+    let mut input = random.pick(seeds).clone();
+    for _ in 0..=random.below(4) {
+        let at = random.below(input.len());
+        let range = random.range(input.len());
+        match random.below(9) {
+            0 if !input.is_empty() => input[at] ^= 1 << random.below(8),
+            1 if !input.is_empty() => input[at] = *random.pick(&[0, 1, 0x7f, 0x80, 0xff]),
             2 => input.truncate(at),
             3 => drop(input.drain(range)),
             4 => {
@@ -92,18 +92,18 @@ pub(crate) fn bytes(dice: &mut Dice, seeds: &[Vec<u8>]) -> Vec<u8> {
                 input.splice(at..at, copy);
             }
             5 => {
-                let other = dice.pick(seeds);
-                let from = dice.range(other.len());
+                let other = random.pick(seeds);
+                let from = random.range(other.len());
                 input.splice(range, other[from].iter().copied());
             }
             6 => {
-                let word = dice.pick(&EDGES).to_le_bytes();
-                let at = if dice.below(2) == 0 { at / 4 * 4 } else { at };
+                let word = random.pick(&EDGES).to_le_bytes();
+                let at = if random.below(2) == 0 { at / 4 * 4 } else { at };
                 input.iter_mut().skip(at).zip(word).for_each(|(byte, new)| *byte = new);
             }
             7 => input.iter_mut().skip(at).take(8).for_each(|byte| *byte = byte.wrapping_add(1)),
             _ => {
-                let noise: Vec<u8> = (0..dice.below(9)).map(|_| dice.roll() as u8).collect();
+                let noise: Vec<u8> = (0..random.below(9)).map(|_| random.draw_step() as u8).collect();
                 input.splice(at..at, noise);
             }
         }
@@ -130,23 +130,23 @@ fn tokens(text: &str) -> Vec<String> {
 }
 
 /// One to four alterations of one of the texts, word by word or line by line; now and then byte by byte.
-pub(crate) fn text(dice: &mut Dice, seeds: &[Vec<u8>]) -> Vec<u8> {
-    if dice.below(8) == 0 {
-        return bytes(dice, seeds);
+pub(crate) fn text(random: &mut StepRandom, seeds: &[Vec<u8>]) -> Vec<u8> {
+    if random.below(8) == 0 {
+        return bytes(random, seeds);
     }
     let read = |seed: &Vec<u8>| String::from_utf8_lossy(seed).into_owned();
-    let mut words = tokens(&read(dice.pick(seeds)));
-    for _ in 0..=dice.below(4) {
-        let at = dice.below(words.len());
-        let range = dice.range(words.len());
-        match dice.below(9) {
+    let mut words = tokens(&read(random.pick(seeds)));
+    for _ in 0..=random.below(4) {
+        let at = random.below(words.len());
+        let range = random.range(words.len());
+        match random.below(9) {
             0 => drop(words.drain(range)),
             1 => {
                 let copy = words[range].to_vec();
                 words.splice(at..at, copy);
             }
             2 => {
-                let other = dice.below(words.len());
+                let other = random.below(words.len());
                 if !words.is_empty() {
                     words.swap(at, other);
                 }
@@ -155,26 +155,28 @@ pub(crate) fn text(dice: &mut Dice, seeds: &[Vec<u8>]) -> Vec<u8> {
                 let is_number = |word: &String| word.chars().any(|c| c.is_ascii_digit()) && word.parse::<f64>().is_ok();
                 let numbers: Vec<usize> = (0..words.len()).filter(|&i| is_number(&words[i])).collect();
                 if !numbers.is_empty() {
-                    words[*dice.pick(&numbers)] = (*dice.pick(&NUMBERS)).to_owned();
+                    words[*random.pick(&numbers)] = (*random.pick(&NUMBERS)).to_owned();
                 }
             }
             5 => {
-                let other = tokens(&read(dice.pick(seeds)));
-                let from = dice.range(other.len());
+                let other = tokens(&read(random.pick(seeds)));
+                let from = random.range(other.len());
                 words.splice(range, other[from].iter().cloned());
             }
-            6 if !words.is_empty() => words[at] = read(dice.pick(seeds)).lines().nth(at % 50).unwrap_or("").to_owned(),
+            6 if !words.is_empty() => {
+                words[at] = read(random.pick(seeds)).lines().nth(at % 50).unwrap_or("").to_owned()
+            }
             7 => {
-                let nested =
-                    (*dice.pick(&["[", "{ a = ", "[[", "(", "\"", "{\"a\":", "a.", "é"])).repeat(1 + dice.below(300));
+                let nested = (*random.pick(&["[", "{ a = ", "[[", "(", "\"", "{\"a\":", "a.", "é"]))
+                    .repeat(1 + random.below(300));
                 words.insert(at, nested);
             }
             _ => {
-                let seed = read(dice.pick(seeds));
+                let seed = read(random.pick(seeds));
                 let lines: Vec<&str> = seed.lines().collect();
-                let line = if lines.is_empty() { "" } else { *dice.pick(&lines) };
+                let line = if lines.is_empty() { "" } else { *random.pick(&lines) };
                 let breaks: Vec<usize> = (0..words.len()).filter(|&i| words[i].starts_with('\n')).collect();
-                let at = if breaks.is_empty() { 0 } else { *dice.pick(&breaks) };
+                let at = if breaks.is_empty() { 0 } else { *random.pick(&breaks) };
                 words.insert(at, format!("\n{line}"));
             }
         }

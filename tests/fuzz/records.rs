@@ -5,18 +5,18 @@ use super::within::folder;
 use super::{experiment, file, files, mutate, somewhere};
 use crate::memory::Memory;
 use skilltree::backend::cpu::CpuBackend;
-use skilltree::experiment::checkpoint::Checkpoint;
-use skilltree::experiment::result::{LearnerResult, decode, encode};
-use skilltree::experiment::run::RunError;
-use skilltree::experiment::train::train;
-use skilltree::record::disk::Disk;
-use skilltree::record::failures::read_failures;
-use skilltree::record::manifest::Manifest;
-use skilltree::record::places::read_places;
-use skilltree::record::sweep::read_sweep;
-use skilltree::record::tables::{parse_evaluations, parse_trials};
-use skilltree::record::trajectories::read_trajectories;
-use skilltree::record::weights::read_weights;
+use skilltree::run_folder::failures::read_failures;
+use skilltree::run_folder::file_system::Disk;
+use skilltree::run_folder::manifest::Manifest;
+use skilltree::run_folder::sensor_readings::read_places;
+use skilltree::run_folder::sweep::read_sweep;
+use skilltree::run_folder::tables::{parse_evaluations, parse_trials};
+use skilltree::run_folder::trajectories::read_trajectories;
+use skilltree::run_folder::weights::read_weights;
+use skilltree::train::batch::train;
+use skilltree::train::checkpoint::Checkpoint;
+use skilltree::train::result::{LearnerResult, decode, encode};
+use skilltree::train::run::RunError;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -37,7 +37,7 @@ fn parts() {
         Ok(results) if encode(&results) != input => Err("is not what was read".to_owned()),
         other => Ok(other.is_ok()),
     };
-    campaign("parts", |dice| mutate::bytes(dice, &seeds), read).conclude("parts");
+    campaign("parts", |random| mutate::bytes(random, &seeds), read).conclude("parts");
 }
 
 /// A part whose frame vouches for nonsense: whoever goes on from there refuses it, or takes what can be taken.
@@ -52,7 +52,7 @@ fn vouched_parts() {
         drop(run);
         Ok(experiment.run(&disk, &folder()).is_ok())
     };
-    campaign("vouched_parts", |dice| mutate::bytes(dice, &seeds), read).conclude("vouched_parts");
+    campaign("vouched_parts", |random| mutate::bytes(random, &seeds), read).conclude("vouched_parts");
 }
 
 /// The content of a checkpoint, as if its frame vouched for it.
@@ -64,7 +64,7 @@ fn checkpoints() {
     let seed = experiment.open(&disk, &folder()).unwrap().read_checkpoint().unwrap();
     let seeds = [seed.expect("a checkpoint")];
     let read = |input: &[u8]| Ok(Checkpoint::read(input, &experiment.plan, &experiment.groups).is_ok());
-    campaign("checkpoints", |dice| mutate::bytes(dice, &seeds), read).conclude("checkpoints");
+    campaign("checkpoints", |random| mutate::bytes(random, &seeds), read).conclude("checkpoints");
 }
 
 #[test]
@@ -75,7 +75,7 @@ fn tables() {
         let trials = parse_trials(input.to_vec(), somewhere()).is_ok();
         Ok(trials | parse_evaluations(input.to_vec(), somewhere()).is_ok())
     };
-    campaign("tables", |dice| mutate::bytes(dice, &seeds), read).conclude("tables");
+    campaign("tables", |random| mutate::bytes(random, &seeds), read).conclude("tables");
 }
 
 #[test]
@@ -84,11 +84,11 @@ fn weights() {
     // The header is text behind eight bytes of length: half of the inputs have another text with the right length.
     let header = |seed: &[u8]| 8 + u64::from_le_bytes(seed[..8].try_into().unwrap()) as usize;
     let texts: Vec<Vec<u8>> = seeds.iter().map(|seed| seed[8..header(seed)].to_vec()).collect();
-    let make = |dice: &mut mutate::Dice| {
-        if dice.below(2) == 0 {
-            return mutate::bytes(dice, &seeds);
+    let make = |random: &mut mutate::StepRandom| {
+        if random.below(2) == 0 {
+            return mutate::bytes(random, &seeds);
         }
-        let text = mutate::text(dice, &texts);
+        let text = mutate::text(random, &texts);
         let length = (text.len() as u64).to_le_bytes();
         [&length[..], &text, &seeds[0][header(&seeds[0])..]].concat()
     };
@@ -117,7 +117,7 @@ fn json() {
         let failures = read_failures(input, somewhere()).is_ok();
         Ok(manifest | places | sweep | failures | read_trajectories(input, somewhere()).is_ok())
     };
-    campaign("json", |dice| mutate::text(dice, &seeds), read).conclude("json");
+    campaign("json", |random| mutate::text(random, &seeds), read).conclude("json");
 }
 
 /// A run folder in which files were lost, altered or mixed up: opening it, and going on, is refused or works.
@@ -126,20 +126,20 @@ fn folders() {
     let names: Vec<&PathBuf> = files().keys().collect();
     let contents: Vec<Vec<u8>> = files().values().cloned().collect();
     let experiment = experiment();
-    let make = |dice: &mut mutate::Dice| dice.roll().to_le_bytes().to_vec();
+    let make = |random: &mut mutate::StepRandom| random.draw_step().to_le_bytes().to_vec();
     let read = |input: &[u8]| {
-        let mut dice = mutate::Dice::new(u64::from_le_bytes(input.try_into().unwrap()));
+        let mut random = mutate::StepRandom::new(u64::from_le_bytes(input.try_into().unwrap()));
         let mut files = files().clone();
-        if dice.below(2) == 0 {
+        if random.below(2) == 0 {
             files.remove(&folder().join("manifest.json"));
         }
-        for _ in 0..=dice.below(3) {
-            let name = (*dice.pick(&names)).clone();
-            match dice.below(4) {
+        for _ in 0..=random.below(3) {
+            let name = (*random.pick(&names)).clone();
+            match random.below(4) {
                 0 => drop(files.remove(&name)),
-                1 => drop(files.insert(name, mutate::bytes(&mut dice, &contents))),
+                1 => drop(files.insert(name, mutate::bytes(&mut random, &contents))),
                 2 => drop(
-                    files.insert(folder().join("parts/arm0-seed0_arm0-seed0"), mutate::bytes(&mut dice, &contents)),
+                    files.insert(folder().join("parts/arm0-seed0_arm0-seed0"), mutate::bytes(&mut random, &contents)),
                 ),
                 _ => drop(files.insert(folder().join(".x.7.skilltree-tmp"), Vec::new())),
             }

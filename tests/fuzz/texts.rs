@@ -81,7 +81,7 @@ fn configs() {
     let turn = Cell::new(0_u32);
     campaign(
         "configs",
-        |dice| mutate::text(dice, &seeds),
+        |random| mutate::text(random, &seeds),
         |input| {
             fs::write(&own, input).unwrap();
             turn.set(turn.get() + 1);
@@ -108,7 +108,7 @@ fn command_lines() {
     let seeds: Vec<Vec<u8>> = seeds.iter().map(|seed| seed.as_bytes().to_vec()).collect();
     campaign(
         "command_lines",
-        |dice| mutate::text(dice, &seeds),
+        |random| mutate::text(random, &seeds),
         |input| {
             let text = String::from_utf8_lossy(input);
             let mut lines = text.lines().map(str::to_owned);
@@ -126,7 +126,7 @@ fn worlds() {
     seeds.extend(texts(&[root().join("tests/support/small.toml")]));
     campaign(
         "worlds",
-        |dice| mutate::text(dice, &seeds),
+        |random| mutate::text(random, &seeds),
         |input| {
             let Ok(text) = std::str::from_utf8(input) else { return Ok(false) };
             Ok(world::load::parse(text, somewhere()).is_ok())

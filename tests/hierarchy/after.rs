@@ -8,16 +8,16 @@ use bytemuck::Zeroable;
 use skilltree::backend::cpu::CpuBackend;
 use skilltree::backend::{Backend, Cohort, Stop, Test};
 use skilltree::config::plan::Plan;
-use skilltree::evaluate::STATE_ACHIEVED;
-use skilltree::experiment::group::Group;
-use skilltree::experiment::result::{LearnerResult, RoomSums};
-use skilltree::experiment::run::{Observer, Options, run};
-use skilltree::experiment::train::{train, train_stem};
-use skilltree::experiment::trajectories::trajectories;
-use skilltree::learner::layout::{Episode, LESSON_HEADER, RECORD_WORDS, VALUE_WORD};
-use skilltree::lesson::record::ENDED;
-use skilltree::record::weights::read_weights;
-use skilltree::record::{Provenance, RunFolder};
+use skilltree::kernels::evaluate::STATE_ACHIEVED;
+use skilltree::layout::{Episode, LESSON_HEADER, RECORD_WORDS, VALUE_WORD};
+use skilltree::learn::lesson::ENDED;
+use skilltree::run_folder::weights::read_weights;
+use skilltree::run_folder::{Provenance, RunFolder};
+use skilltree::train::batch::{train, train_stem};
+use skilltree::train::batch_group::Group;
+use skilltree::train::result::{LearnerResult, RoomSums};
+use skilltree::train::run::{Observer, Options, run};
+use skilltree::train::trajectories::trajectories;
 use tempfile::TempDir;
 
 fn number(plan: &Plan, name: &str) -> usize {
@@ -223,7 +223,7 @@ fn alterations_test_what_was_learned_elsewhere() {
             assert_eq!((count, test.skill as usize, test.trials, test.actions), (1, root, 8, home.actions));
             assert_eq!(summed(&test.rooms).episodes, 30);
         }
-        // Nothing altered: the same dice give the same trials.
+        // Nothing altered: the same random give the same trials.
         assert_eq!(last(1).0.rooms, home.rooms);
         assert_ne!(last(2).0.rooms, home.rooms);
         // In the moved world: what the learner does there when it is put there.
@@ -232,8 +232,8 @@ fn alterations_test_what_was_learned_elsewhere() {
         let noise = plan.alterations[2].noise.expect("noise");
         let own = plan.arms[0].noise;
         assert_eq!((noise.light, noise.sonar, noise.kind), (0.0, own.sonar, own.kind));
-        for settings in &mut there.settings {
-            settings.noise_light = 0.0;
+        for params in &mut there.params {
+            params.noise_light = 0.0;
         }
         let mut backend = CpuBackend::new(2, None).expect("threads");
         backend.load(there).expect("memory");
@@ -269,12 +269,12 @@ fn example_trials_are_tests_from_named_places() {
     );
 
     // The same trial, step by step, from the learner's memory.
-    let (settings, nets) = (&memory.settings[..memory.skills], &memory.nets[..memory.nets_stride]);
+    let (params, nets) = (&memory.params[..memory.skills], &memory.nets[..memory.nets_stride]);
     let root = memory.skills - 1;
     let mut episode = Episode { state: 1, ..Episode::zeroed() };
-    skilltree::skill::act::place(&mut episode.agent, &memory.shared, *start);
-    let dispatch = skilltree::learner::layout::Dispatch {
-        quanta: 1,
+    skilltree::policy::hierarchy::place(&mut episode.agent, &memory.shared, *start);
+    let dispatch = skilltree::layout::Dispatch {
+        iterations: 1,
         test_skill: root as u32,
         test_number: 0xff_ffff,
         ..Zeroable::zeroed()
@@ -282,7 +282,7 @@ fn example_trials_are_tests_from_named_places() {
     let mut expected = Vec::new();
     while episode.state == 1 {
         let before = episode.agent;
-        skilltree::evaluate::evaluate(&mut episode, &memory.shared, settings, nets, &dispatch, 0);
+        skilltree::kernels::evaluate::evaluate(&mut episode, &memory.shared, params, nets, &dispatch, 0);
         expected.push((before.x, before.y, before.heading, episode.agent.run[root] & 0xff));
     }
     let points: Vec<_> = example.points.iter().map(|p| (p.x, p.y, p.heading, p.child)).collect();

@@ -3,9 +3,9 @@
 
 use super::bench::{Bench, Nets64, TREE, made_up, most, random, readings, scratch_of};
 use super::persistence::{Set, bits};
-use skilltree::learner::layout::{BASE_WORDS, LANES, RECORD_WORDS};
-use skilltree::lesson::record::{CUT, ENDED};
-use skilltree::lesson::replay::{begin_replay, replay_step};
+use skilltree::layout::{BASE_WORDS, LANES, RECORD_WORDS};
+use skilltree::learn::lesson::{CUT, ENDED};
+use skilltree::learn::td_lambda::{begin_replay, replay_step};
 use skilltree::qnet::forward::net_of;
 
 /// A learning rate so small that no weight changes, and a power of two, so that what was learned can be read off the
@@ -88,10 +88,10 @@ fn bench(backup: Backup, shared_net: bool, more: &[&str]) -> Bench {
     set.extend(more);
     let mut bench = Bench::new(TREE, &set);
     let root = bench.skill("top");
-    let settings = &mut bench.settings[root];
-    (settings.rate, settings.rate_fall, settings.beta1) = (HARDLY, 0.0, 0.0);
-    settings.value_scale = 1.0 / 64.0;
-    bench.cursor.skill = root as u32;
+    let params = &mut bench.params[root];
+    (params.rate, params.rate_fall, params.beta1) = (HARDLY, 0.0, 0.0);
+    params.value_scale = 1.0 / 64.0;
+    bench.state.skill = root as u32;
     bench
 }
 
@@ -100,7 +100,7 @@ type Taught = Option<f64>;
 
 /// Replays a trial; what each of its steps taught, first step first.
 fn replay(bench: &mut Bench, trial: &Trial) -> Vec<Taught> {
-    let root = bench.cursor.skill as usize;
+    let root = bench.state.skill as usize;
     let skill = bench.shared.skills[root];
     assert_eq!(skill.record_words as usize, RECORD_WORDS);
     let mut words = vec![trial.steps.len() as u32, trial.end, 0, 0];
@@ -119,20 +119,20 @@ fn replay(bench: &mut Bench, trial: &Trial) -> Vec<Taught> {
         };
         let at = velocity(step.child);
         bench.nets[at] = 0.0;
-        let updates = bench.cursor.updates;
-        if bench.cursor.replay_open == 1 {
+        let updates = bench.state.updates;
+        if bench.state.replay_open == 1 {
             replay_step(&mut bench.learner(), &mut scratch, 0);
-            assert_eq!(bench.cursor.updates, updates, "nothing is done after the last step");
+            assert_eq!(bench.state.updates, updates, "nothing is done after the last step");
         }
         replay_step(&mut bench.learner(), &mut scratch, 0);
-        let learned = bench.cursor.updates - updates;
+        let learned = bench.state.updates - updates;
         // The slope of the output bias: the target's distance times the slope of the output.
         let slope = f64::from(bench.nets[at]) / f64::from(HARDLY);
         let q = f64::from(scratch.q[step.child]);
         found.push((learned == 1).then(|| q + slope / (1.0 - q * q)));
         assert!(learned == 1 || slope == 0.0);
     }
-    assert_eq!((bench.cursor.replay_left, bench.cursor.replay_open), (0, 0));
+    assert_eq!((bench.state.replay_left, bench.state.replay_open), (0, 0));
     // No weight has moved, so every target was made from the same values.
     let weights = |nets: &[f32]| Nets64::of(nets, &skill).nets;
     for (now, then) in weights(&bench.nets).iter().flatten().zip(weights(&before).iter().flatten()) {
@@ -155,10 +155,10 @@ fn constant(backup: Backup, shared_net: bool) -> Bench {
         let biases = net_of(&skill, 0, net as u32) as usize + (skill.rows as usize - 1) * LANES;
         bench.nets[biases + child - net] = worth.atanh();
     }
-    let settings = &mut bench.settings[root];
-    (settings.gamma, settings.lambda, settings.target_limit) = (0.5, 0.5, 0.875);
-    (settings.policy_threshold, settings.sharpness_start, settings.sharpness_slope) = (0.0, 4.0, 0.0);
-    (settings.inner_share, settings.timeout_terminal) = (0.0, 0);
+    let params = &mut bench.params[root];
+    (params.gamma, params.lambda, params.target_limit) = (0.5, 0.5, 0.875);
+    (params.policy_threshold, params.inverse_temperature_start, params.inverse_temperature_slope) = (0.0, 4.0, 0.0);
+    (params.inner_share, params.timeout_terminal) = (0.0, 0);
     bench
 }
 
@@ -216,7 +216,7 @@ fn seven_steps_by_hand() {
         // The same targets twice as far from the best value; the returns themselves stay.
         let mut bench = constant(Backup::Steps, shared_net);
         let root = bench.skill("top");
-        bench.settings[root].advantage_scale = 2.0;
+        bench.params[root].advantage_scale = 2.0;
         let best = [0.25, 0.25, 0.5, 0.5, 0.25, 0.5, 0.5];
         let far: [f64; 7] = std::array::from_fn(|t| (best[t] + 2.0 * (steps[t] - best[t])).clamp(-0.875, 0.875));
         // The last one would be 1 and is clipped.
@@ -242,7 +242,7 @@ fn seven_steps_by_hand() {
 
         // Those between are learned with what remains from there on.
         let mut bench = constant(Backup::Decisions, shared_net);
-        bench.settings[root].inner_share = 1.0;
+        bench.params[root].inner_share = 1.0;
         let mixed5 = 0.5 * 0.5 + 0.5 * w5;
         let inner = [w0, -0.25 + 0.5 * (0.25 + 0.5 * w2), w2, 0.5 + 0.25 * mixed5, 0.5 * mixed5, w5, 0.75];
         check("decisions, all steps", &replay(&mut bench, &seven(ENDED)), &all(inner));
@@ -256,15 +256,15 @@ fn seven_steps_by_hand() {
         let decided = cut(Backup::Decisions)[5].expect("learned");
         assert!((decided - 0.5 * 0.875).abs() < 1.0e-6, "{decided}");
         let mut wide = constant(Backup::Steps, shared_net);
-        wide.settings[root].target_limit = 4.0;
+        wide.params[root].target_limit = 4.0;
         let beyond = replay(&mut wide, &seven(CUT))[6].expect("learned");
         assert!((beyond - (0.75 + 0.5 * 0.25)).abs() < 1.0e-6, "{beyond}");
         let mut wide = constant(Backup::Persistent, shared_net);
-        wide.settings[root].target_limit = 4.0;
+        wide.params[root].target_limit = 4.0;
         let beyond = replay(&mut wide, &seven(CUT))[6].expect("learned");
         assert!((beyond - 1.0).abs() < 1.0e-6, "{beyond}");
         let mut terminal = constant(Backup::Decisions, shared_net);
-        terminal.settings[root].timeout_terminal = 1;
+        terminal.params[root].timeout_terminal = 1;
         check("decisions, terminal", &replay(&mut terminal, &seven(CUT)), &only);
     }
 }
@@ -278,7 +278,7 @@ struct Terms {
     lambda: f64,
     /// Factor on the distance of targets from the best value.
     stretch: f64,
-    sharpness: f64,
+    inverse_temperature: f64,
     /// Least probability of a child that is learned.
     least: f64,
 }
@@ -298,11 +298,11 @@ impl Seen {
     }
 
     /// Probability of the child that ran: 0 where it is not offered.
-    fn odds(&self, sharpness: f64) -> f64 {
+    fn odds(&self, inverse_temperature: f64) -> f64 {
         if !self.offered.contains(&self.child) {
             return 0.0;
         }
-        let weight = |child: usize| (sharpness * self.q[child]).exp();
+        let weight = |child: usize| (inverse_temperature * self.q[child]).exp();
         weight(self.child) / self.offered.iter().map(|child| weight(*child)).sum::<f64>()
     }
 }
@@ -325,10 +325,10 @@ fn defined(seen: &[Seen], after: f64, at_decisions: bool, terms: Terms) -> Vec<(
             None => after,
         };
         returns[t] = earned + terms.gamma.powi((next - t) as i32) * mixed;
-        handed[t] = if seen[t].odds(terms.sharpness) > terms.least { returns[t] } else { seen[t].best() };
+        handed[t] = if seen[t].odds(terms.inverse_temperature) > terms.least { returns[t] } else { seen[t].best() };
     }
     let target = |t: usize| seen[t].best() + terms.stretch * (returns[t] - seen[t].best());
-    (0..seen.len()).map(|t| (target(t), seen[t].odds(terms.sharpness) > terms.least)).collect()
+    (0..seen.len()).map(|t| (target(t), seen[t].odds(terms.inverse_temperature) > terms.least)).collect()
 }
 
 /// A trial of five to ten steps, and how it looks to some way of learning.
@@ -376,17 +376,17 @@ fn targets_are_those_of_the_definitions() {
             gamma: [0.9, 0.99, 1.0][round / 3 % 3],
             lambda: [0.0, 0.3, 0.6, 0.95, 1.0][round / 9 % 5],
             stretch: [1.0, 1.0, 4.0][round / 6 % 3],
-            sharpness: 6.0,
+            inverse_temperature: 6.0,
             least: [0.0, 0.02, 0.1][round / 18 % 3],
         };
         let inner_share: f64 = [0.0, 1.0, 0.5][round / 54 % 3];
-        let settings = &mut bench.settings[root];
-        (settings.gamma, settings.lambda) = (terms.gamma as f32, terms.lambda as f32);
-        (settings.advantage_scale, settings.target_limit) = (terms.stretch as f32, 1.0e6);
-        (settings.sharpness_start, settings.sharpness_slope) = (terms.sharpness as f32, 0.0);
-        (settings.policy_threshold, settings.inner_share) = (terms.least as f32, inner_share as f32);
-        settings.timeout_terminal = u32::from(round % 5 == 0);
-        bench.cursor.trial = round as u32;
+        let params = &mut bench.params[root];
+        (params.gamma, params.lambda) = (terms.gamma as f32, terms.lambda as f32);
+        (params.advantage_scale, params.target_limit) = (terms.stretch as f32, 1.0e6);
+        (params.inverse_temperature_start, params.inverse_temperature_slope) = (terms.inverse_temperature as f32, 0.0);
+        (params.policy_threshold, params.inner_share) = (terms.least as f32, inner_share as f32);
+        params.timeout_terminal = u32::from(round % 5 == 0);
+        bench.state.trial = round as u32;
 
         let nets = Nets64::of(&bench.nets, &bench.shared.skills[root]);
         let offered = |step: &Step| if backup == Backup::Steps { step.choices.clone() } else { step.allowed() };
@@ -405,7 +405,7 @@ fn targets_are_those_of_the_definitions() {
         let last = nets.values(&trial.last.inputs(4));
         let after = if ends { 0.0 } else { most(offered(&trial.last).iter().map(|child| last[*child])) };
         cuts += u32::from(!ends);
-        if seen.iter().any(|seen| (seen.odds(terms.sharpness) - terms.least).abs() < 1.0e-4) {
+        if seen.iter().any(|seen| (seen.odds(terms.inverse_temperature) - terms.least).abs() < 1.0e-4) {
             continue;
         }
         let expected = defined(&seen, after, backup == Backup::Decisions, terms);
@@ -442,9 +442,9 @@ fn steps_between_decisions_are_drawn_anew() {
     let root = bench.skill("top");
     let mut counts = [0_u32; 7];
     let mut patterns = std::collections::BTreeSet::new();
-    bench.settings[root].inner_share = 0.25;
+    bench.params[root].inner_share = 0.25;
     for number in 0..1200 {
-        (bench.cursor.trial, bench.cursor.replay) = (number / 40, number % 40);
+        (bench.state.trial, bench.state.replay) = (number / 40, number % 40);
         let found = replay(&mut bench, &seven(ENDED));
         patterns.insert(found.iter().map(Option::is_some).collect::<Vec<bool>>());
         found.iter().enumerate().for_each(|(t, found)| counts[t] += u32::from(found.is_some()));

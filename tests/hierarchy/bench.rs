@@ -7,13 +7,13 @@ pub(crate) use observations::made_up;
 
 use skilltree::config::plan::{Child, Input, Plan, Skill, Threshold};
 use skilltree::config::{Overrides, load};
-use skilltree::learner::build::Shape;
-use skilltree::learner::layout::{
-    BASE_WORDS, Cursor, LANES, MEMORY_WORD, RECORD_WORDS, Settings, SkillPlan, VALUE_WORD,
+use skilltree::env::segments::SegmentGrid;
+use skilltree::env::workgroup::{CohortData, Learner, Scratch};
+use skilltree::layout::{
+    BASE_WORDS, HyperParams, LANES, LearnerState, MEMORY_WORD, RECORD_WORDS, SkillShape, VALUE_WORD,
 };
-use skilltree::learner::memory::{Learner, Scratch, Shared};
 use skilltree::qnet::forward::net_of;
-use skilltree::robot::floor::Floor;
+use skilltree::train::allocate::Shape;
 use std::path::Path;
 
 /// A config of the small world.
@@ -76,9 +76,9 @@ pub(crate) fn random(mut state: u64) -> impl FnMut() -> f64 {
 /// One learner of a plan's first arm, without a bank, and its memory.
 pub(crate) struct Bench {
     pub(crate) plan: Plan,
-    pub(crate) shared: Shared,
-    pub(crate) settings: Vec<Settings>,
-    pub(crate) cursor: Cursor,
+    pub(crate) shared: CohortData,
+    pub(crate) params: Vec<HyperParams>,
+    pub(crate) state: LearnerState,
     pub(crate) nets: Vec<f32>,
     pub(crate) lessons: Vec<u32>,
 }
@@ -87,18 +87,18 @@ impl Bench {
     pub(crate) fn new(text: &str, set: &[&str]) -> Self {
         let plan = plan_with(text, set);
         let shape = Shape::new(plan.world(), &[&plan.arms[0]]).expect("the skills fit");
-        let (settings, cursor, nets) = shape.learner(&plan.arms[0], plan.run_seed, 0);
-        let floor = Floor::new(&shape.atlas.plan, &shape.atlas.words);
+        let (params, state, nets) = shape.learner(&plan.arms[0], plan.run_seed, 0);
+        let floor = SegmentGrid::new(&shape.tables.plan, &shape.tables.words);
         let lessons = vec![0; shape.lessons_stride];
-        let shared = Shared { floor, skills: shape.skills, atlas: shape.atlas.words, bank: vec![0] };
-        Self { plan, shared, settings, cursor, nets, lessons }
+        let shared = CohortData { floor, skills: shape.skills, tables: shape.tables.words, bank: vec![0] };
+        Self { plan, shared, params, state, nets, lessons }
     }
 
     pub(crate) fn learner(&mut self) -> Learner<'_> {
         Learner {
             shared: &self.shared,
-            settings: &self.settings,
-            cursor: &mut self.cursor,
+            params: &self.params,
+            state: &mut self.state,
             nets: &mut self.nets,
             lessons: &mut self.lessons,
             rows: &mut [],
@@ -132,7 +132,7 @@ pub(crate) struct Nets64 {
 }
 
 impl Nets64 {
-    pub(crate) fn of(words: &[f32], skill: &SkillPlan) -> Self {
+    pub(crate) fn of(words: &[f32], skill: &SkillShape) -> Self {
         let net = |number: u32| {
             let first = net_of(skill, 0, number) as usize;
             words[first..first + skill.rows as usize * LANES].iter().map(|w| f64::from(*w)).collect()
@@ -231,7 +231,7 @@ pub(crate) struct Tree64<'a> {
 }
 
 impl<'a> Tree64<'a> {
-    pub(crate) fn new(skills: &'a [Skill], rooms: usize, plans: &[SkillPlan], nets: &[f32]) -> Self {
+    pub(crate) fn new(skills: &'a [Skill], rooms: usize, plans: &[SkillShape], nets: &[f32]) -> Self {
         Self { skills, nets: plans.iter().map(|plan| Nets64::of(nets, plan)).collect(), rooms }
     }
 

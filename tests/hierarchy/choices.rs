@@ -7,12 +7,12 @@ use super::persistence::{Choice, Chooser, Rules, Set};
 use bytemuck::Zeroable;
 use glam::Vec2;
 use skilltree::config::plan::{Child, Threshold};
-use skilltree::evaluate::{STATE_RUNNING, evaluate};
-use skilltree::learner::layout::{Agent, Dispatch, Episode, RECORD_WORDS};
-use skilltree::learner::memory::Scratch;
-use skilltree::math::rng::{Stream, roll};
-use skilltree::skill::act::{place, sense};
-use skilltree::skill::persist::IDLE;
+use skilltree::env::workgroup::Scratch;
+use skilltree::kernels::evaluate::{STATE_RUNNING, evaluate};
+use skilltree::layout::{Agent, Dispatch, Episode, RECORD_WORDS};
+use skilltree::math::rng::{Stream, draw_step};
+use skilltree::policy::hierarchy::{place, sense};
+use skilltree::policy::persistence::IDLE;
 use skilltree::world::Pose;
 use std::collections::BTreeMap;
 
@@ -44,16 +44,16 @@ impl Bench {
 
     fn step(&self, episode: &mut Episode, number: u32) {
         let root = self.shared.skills.len() as u32 - 1;
-        let dispatch = Dispatch { quanta: 1, test_skill: root, test_number: 7, ..Dispatch::zeroed() };
-        evaluate(episode, &self.shared, &self.settings, &self.nets, &dispatch, number);
+        let dispatch = Dispatch { iterations: 1, test_skill: root, test_number: 7, ..Dispatch::zeroed() };
+        evaluate(episode, &self.shared, &self.params, &self.nets, &dispatch, number);
     }
 
-    /// What a robot without noise senses, whatever the dice.
+    /// What a robot without noise senses, whatever the random.
     fn look(&self, agent: &Agent) -> [u32; RECORD_WORDS] {
         let root = self.shared.skills.len() - 1;
         let (mut agent, mut scratch) = (*agent, Scratch::default());
-        let dice = roll(Stream { key: [0, 0], skill: 0, trial: 0, step: 0, purpose: 0 });
-        sense(&mut agent, &self.shared, &mut scratch, &self.settings[root], &dice);
+        let random = draw_step(Stream { key: [0, 0], skill: 0, trial: 0, step: 0, purpose: 0 });
+        sense(&mut agent, &self.shared, &mut scratch, &self.params[root], &random);
         scratch.record
     }
 
@@ -77,9 +77,9 @@ impl Bench {
 }
 
 /// Odds of a Boltzmann choice.
-fn odds(values: &[f64], sharpness: f64) -> Vec<f64> {
-    let total: f64 = values.iter().map(|q| (sharpness * q).exp()).sum();
-    values.iter().map(|q| (sharpness * q).exp() / total).collect()
+fn odds(values: &[f64], inverse_temperature: f64) -> Vec<f64> {
+    let total: f64 = values.iter().map(|q| (inverse_temperature * q).exp()).sum();
+    values.iter().map(|q| (inverse_temperature * q).exp() / total).collect()
 }
 
 /// Counts against probabilities: within five standard deviations each.

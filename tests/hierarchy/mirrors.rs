@@ -4,15 +4,15 @@ use super::bench::{Bench, TREE, made_up, random, reflected};
 use super::oracle::{Written, stream};
 use bytemuck::Zeroable;
 use skilltree::config::plan::Event;
-use skilltree::learner::build::Shape;
-use skilltree::learner::layout::Agent;
-use skilltree::learner::memory::{Scratch, Shared};
-use skilltree::lesson::record::{CUT, ENDED};
-use skilltree::lesson::replay::{begin_replay, replay_step};
-use skilltree::math::rng::{Stream, roll};
-use skilltree::robot::floor::Floor;
-use skilltree::robot::motion::{COLLISION, FORWARD};
-use skilltree::skill::act::{execute, place, sense, think};
+use skilltree::env::motion::{COLLISION, FORWARD};
+use skilltree::env::segments::SegmentGrid;
+use skilltree::env::workgroup::{CohortData, Scratch};
+use skilltree::layout::Agent;
+use skilltree::learn::lesson::{CUT, ENDED};
+use skilltree::learn::td_lambda::{begin_replay, replay_step};
+use skilltree::math::rng::{Stream, draw_step};
+use skilltree::policy::hierarchy::{execute, place, sense, think};
+use skilltree::train::allocate::Shape;
 use skilltree::world::{Pose, World};
 
 /// No noise, and skills whose children stand in no tidy order.
@@ -28,25 +28,25 @@ const SET: [&str; 5] = [
 fn replayed(bench: &Bench, lesson: &[u32], mirrored: u32, mirror_replays: u32) -> (Vec<u32>, u32) {
     let number = bench.skill("dock");
     let mut nets = bench.nets.clone();
-    let mut cursor = bench.cursor;
-    cursor.skill = number as u32;
-    let mut settings = bench.settings.clone();
-    settings[number].mirror_replays = mirror_replays;
+    let mut state = bench.state;
+    state.skill = number as u32;
+    let mut params = bench.params.clone();
+    params[number].mirror_replays = mirror_replays;
     let mut lessons = lesson.to_vec();
-    let mut learner = skilltree::learner::memory::Learner {
+    let mut learner = skilltree::env::workgroup::Learner {
         shared: &bench.shared,
-        settings: &settings,
-        cursor: &mut cursor,
+        params: &params,
+        state: &mut state,
         nets: &mut nets,
         lessons: &mut lessons,
         rows: &mut [],
     };
     let mut scratch = Scratch::default();
     begin_replay(&mut learner, 0, 0, mirrored);
-    while learner.cursor.replay_left > 0 || learner.cursor.replay_open == 1 {
+    while learner.state.replay_left > 0 || learner.state.replay_open == 1 {
         replay_step(&mut learner, &mut scratch, 0);
     }
-    let updates = cursor.updates;
+    let updates = state.updates;
     (nets.iter().map(|w| w.to_bits()).collect(), updates)
 }
 
@@ -116,12 +116,12 @@ fn mirrored(plan: &Written) -> Written {
     }
 }
 
-fn shared_in(bench: &Bench, world: &World) -> Shared {
+fn shared_in(bench: &Bench, world: &World) -> CohortData {
     let shape = Shape::new(world, &[&bench.plan.arms[0]]).expect("the skills fit");
-    Shared {
-        floor: Floor::new(&shape.atlas.plan, &shape.atlas.words),
+    CohortData {
+        floor: SegmentGrid::new(&shape.tables.plan, &shape.tables.words),
         skills: shape.skills,
-        atlas: shape.atlas.words,
+        tables: shape.tables.words,
         bank: vec![0],
     }
 }
@@ -134,7 +134,7 @@ fn mirrored_skills_do_in_a_mirrored_world_what_theirs_do() {
     let (plain, mirror) = (crooked(), mirrored(&crooked()));
     let (left, right) = (shared_in(&bench, &plain.world()), shared_in(&bench, &mirror.world()));
     let field = plain.field();
-    let dice = roll(Stream { key: [1, 2], skill: 0, trial: 0, step: 0, purpose: 1 });
+    let random = draw_step(Stream { key: [1, 2], skill: 0, trial: 0, step: 0, purpose: 1 });
     let mut next = stream(21);
     let (mut compared, mut skipped, mut lit, mut touching, mut beside) = (0, 0, 0, 0, [0, 0]);
     for (source, image) in [("dock", "kcod"), ("right", "left")] {
@@ -154,14 +154,14 @@ fn mirrored_skills_do_in_a_mirrored_world_what_theirs_do() {
             let heading = (next() * 360.0) as f32;
             let pose = Pose { x: at[0] as f32, y: at[1] as f32, heading };
             let other = Pose { x: 220.0 - pose.x, y: pose.y, heading: (540.0 - heading) % 360.0 };
-            let look = |shared: &Shared, pose: Pose, skill: usize| {
-                let settings = &bench.settings[skill];
+            let look = |shared: &CohortData, pose: Pose, skill: usize| {
+                let params = &bench.params[skill];
                 let (mut agent, mut scratch) = (Agent::zeroed(), Scratch::default());
                 place(&mut agent, shared, pose);
-                sense(&mut agent, shared, &mut scratch, settings, &dice);
-                execute(&mut agent, shared, settings, FORWARD, &dice);
-                sense(&mut agent, shared, &mut scratch, settings, &dice);
-                think(&agent, shared, &mut scratch, &bench.settings, &bench.nets, 0, skill as u32);
+                sense(&mut agent, shared, &mut scratch, params, &random);
+                execute(&mut agent, shared, params, FORWARD, &random);
+                sense(&mut agent, shared, &mut scratch, params, &random);
+                think(&agent, shared, &mut scratch, &bench.params, &bench.nets, 0, skill as u32);
                 (agent, scratch)
             };
             let (here, seen) = look(&left, pose, source);

@@ -1,10 +1,10 @@
 //! Nets with an output for each child: values and gradients against f64, differences and the formulas of the papers.
 
 use super::bench::{Bench, Nets64, TREE, made_up, random, readings, scratch_of};
-use skilltree::learner::layout::LANES;
+use skilltree::layout::LANES;
+use skilltree::policy::features::encode;
 use skilltree::qnet::backward::backward;
 use skilltree::qnet::forward::{forward, net_of};
-use skilltree::skill::encode::encode;
 
 /// A root whose four children share one net of 20 hidden units, and its inputs for made-up senses.
 fn shared_net(optimiser: &[&str]) -> (Bench, usize) {
@@ -24,11 +24,11 @@ fn used(row: usize, lane: usize) -> bool {
 }
 
 /// Values of the bench's net for made-up senses, with the inputs, left in `scratch` for the backward pass.
-fn look(bench: &Bench, root: usize, next: &mut impl FnMut() -> f64) -> (skilltree::learner::memory::Scratch, Vec<f64>) {
+fn look(bench: &Bench, root: usize, next: &mut impl FnMut() -> f64) -> (skilltree::env::workgroup::Scratch, Vec<f64>) {
     let record = made_up(next);
     let mut scratch = scratch_of(&record);
     encode(&bench.shared, &mut scratch, &bench.shared.skills[root], false);
-    forward(&bench.nets, &mut scratch, &bench.shared.skills[root], &bench.settings[root], 0);
+    forward(&bench.nets, &mut scratch, &bench.shared.skills[root], &bench.params[root], 0);
     let sonar = readings(&record).map(|reading| 2.0 * reading / 127.0 - 1.0);
     let bumpers = (0..4).map(|side| f64::from(record[6] >> (24 + side) & 1));
     (scratch, sonar.into_iter().chain(bumpers).collect())
@@ -77,7 +77,7 @@ fn one_step_descends_the_gradient_of_one_output() {
     let mut next = random(5);
     for (child, goal) in [(0, 0.9), (1, -0.7), (2, 0.2), (3, -0.95)] {
         let (mut bench, root) = shared_net(&["learning.optimiser=sgd", "learning.rate=0.5"]);
-        bench.settings[root].beta1 = 0.0;
+        bench.params[root].beta1 = 0.0;
         let skill = bench.shared.skills[root];
         let (mut scratch, x) = look(&bench, root, &mut next);
         let net = Nets64::of(&bench.nets, &skill);
@@ -85,7 +85,7 @@ fn one_step_descends_the_gradient_of_one_output() {
         let delta = goal as f32 - scratch.q[child];
         // A large rate, because the change of a weight is exact only next to what it is added to.
         let before = bench.nets.clone();
-        backward(&mut bench.nets, &mut scratch, &skill, &bench.settings[root], 0, child as u32, delta, 256.0);
+        backward(&mut bench.nets, &mut scratch, &skill, &bench.params[root], 0, child as u32, delta, 256.0);
         let after = Nets64::of(&bench.nets, &skill);
         for (row, (slopes, (now, then))) in
             slopes.chunks(LANES).zip(after.nets[0].chunks(LANES).zip(net.nets[0].chunks(LANES))).enumerate()
@@ -132,7 +132,7 @@ fn adam_of_a_shared_net_follows_the_papers_formula() {
             net.nets[0][i] -= corrected * mean[i] / (square[i] + epsilon * epsilon).sqrt();
         }
         let delta = goal as f32 - scratch.q[child];
-        backward(&mut bench.nets, &mut scratch, &skill, &bench.settings[root], 0, child as u32, delta, rate as f32);
+        backward(&mut bench.nets, &mut scratch, &skill, &bench.params[root], 0, child as u32, delta, rate as f32);
         let found = Nets64::of(&bench.nets, &skill);
         for row in 0..34 {
             let range = row * LANES..(row + 1) * LANES;

@@ -4,9 +4,9 @@
 
 use super::bench::random;
 use bytemuck::Zeroable;
-use skilltree::learner::layout::{Agent, BASE_WORDS, SKILL_CODE, Settings, SkillPlan};
-use skilltree::learner::memory::Scratch;
-use skilltree::skill::persist::{IDLE, commit, options, rest};
+use skilltree::env::workgroup::Scratch;
+use skilltree::layout::{Agent, BASE_WORDS, HyperParams, SKILL_CODE, SkillShape};
+use skilltree::policy::persistence::{IDLE, commit, options, rest};
 use std::collections::BTreeSet;
 
 pub(crate) type Set = BTreeSet<usize>;
@@ -110,9 +110,9 @@ pub(crate) fn members(bits: u32) -> Set {
 }
 
 /// A chooser and the product's words for it. Skills are numbered from 1 to 7; number 0 is the chooser's own.
-fn made_up(next: &mut impl FnMut() -> f64) -> (Chooser, Vec<SkillPlan>, Settings) {
-    let mut skills = vec![SkillPlan::zeroed(); 8];
-    let mut settings = Settings::zeroed();
+fn made_up(next: &mut impl FnMut() -> f64) -> (Chooser, Vec<SkillShape>, HyperParams) {
+    let mut skills = vec![SkillShape::zeroed(); 8];
+    let mut params = HyperParams::zeroed();
     let rules = Rules {
         persist: next() < 0.85,
         applicability: next() < 0.7,
@@ -137,12 +137,12 @@ fn made_up(next: &mut impl FnMut() -> f64) -> (Chooser, Vec<SkillPlan>, Settings
         }
     }
     skills[0].children = count as u32;
-    settings.applicability = u32::from(rules.applicability);
+    params.applicability = u32::from(rules.applicability);
     // Another skill may have been blocked, which does not bind one that masks nothing.
-    settings.mask_blocked = u32::from(next() < 0.8);
-    settings.interrupt = u32::from(rules.interrupt);
-    settings.decision_steps = rules.patience.unwrap_or(0);
-    (Chooser { choices, rules, running: None, before: Set::new() }, skills, settings)
+    params.mask_blocked = u32::from(next() < 0.8);
+    params.interrupt = u32::from(rules.interrupt);
+    params.decision_steps = rules.patience.unwrap_or(0);
+    (Chooser { choices, rules, running: None, before: Set::new() }, skills, params)
 }
 
 #[test]
@@ -151,7 +151,7 @@ fn allowed_sets_and_decisions_are_those_of_the_rules() {
     let mut seen = std::collections::BTreeMap::<Reason, u32>::new();
     let (mut held, mut long, mut fallen_back, mut blocked_out, mut kept_on) = (0, 0, 0, 0, 0);
     for round in 0..600 {
-        let (mut chooser, skills, settings) = made_up(&mut next);
+        let (mut chooser, skills, params) = made_up(&mut next);
         let high = chooser.choices.iter().any(|choice| matches!(choice, Choice::Skill(_)));
         let mut agent = Agent::zeroed();
         agent.run = [IDLE; 8];
@@ -171,9 +171,9 @@ fn allowed_sets_and_decisions_are_those_of_the_rules() {
             // A record of actions alone has no such word: what stands there is of another skill.
             let word = if high { bits(&own) << 8 } else { (next() * 16_777_216.0) as u32 };
             scratch.record[BASE_WORDS] = word | (next() * 256.0) as u32;
-            let found = options(&agent, &scratch, &skills, &settings, 0, chooser.rules.persist);
+            let found = options(&agent, &scratch, &skills, &params, 0, chooser.rules.persist);
 
-            let candidates = chooser.candidates(&own, blocked.filter(|_| settings.mask_blocked == 1));
+            let candidates = chooser.candidates(&own, blocked.filter(|_| params.mask_blocked == 1));
             let reasons = chooser.reasons(&own, &happened);
             let running = chooser.running.map(|(child, _)| child);
             let allowed = if reasons.is_empty() { running.into_iter().collect() } else { candidates.clone() };

@@ -6,12 +6,12 @@ use glam::Vec2;
 use skilltree::backend::cpu::CpuBackend;
 use skilltree::backend::{Backend, Test};
 use skilltree::config::plan::{Plan, Skill};
-use skilltree::experiment::group::{Group, groups, terms_of};
-use skilltree::learner::layout::{Agent, Episode};
-use skilltree::learner::memory::Scratch;
-use skilltree::skill::act::place;
-use skilltree::skill::consult::consult;
-use skilltree::teacher::planner::Planner;
+use skilltree::env::workgroup::Scratch;
+use skilltree::layout::{Agent, Episode};
+use skilltree::policy::hierarchy::place;
+use skilltree::policy::planner_table::consult;
+use skilltree::teacher::value_iteration::Planner;
+use skilltree::train::batch_group::{Group, groups, terms_of};
 use skilltree::world::Pose;
 
 /// The tree with all four skills planned; children in no tidy order.

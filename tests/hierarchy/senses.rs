@@ -6,21 +6,21 @@ use super::trees::{DONE, only_group, reach};
 use bytemuck::Zeroable;
 use skilltree::backend::Backend;
 use skilltree::backend::cpu::CpuBackend;
-use skilltree::experiment::senses::floor_only;
-use skilltree::learner::layout::{Agent, BASE_WORDS, LESSON_HEADER, MEMORY_WORD, RECORD_WORDS, Settings};
-use skilltree::learner::memory::{Scratch, Shared};
-use skilltree::math::rng::{Dice, Stream, roll};
-use skilltree::robot::motion::{BESIDE_LEFT, BESIDE_RIGHT, COLLISION, DOCKED, FORWARD, PASSED_DOOR};
-use skilltree::skill::act::{execute, place, sense};
-use skilltree::skill::encode::encode;
-use skilltree::skill::observe::observe;
-use skilltree::skill::persist::extend;
+use skilltree::env::motion::{BESIDE_LEFT, BESIDE_RIGHT, COLLISION, DOCKED, FORWARD, PASSED_DOOR};
+use skilltree::env::observe::observe;
+use skilltree::env::workgroup::{CohortData, Scratch};
+use skilltree::layout::{Agent, BASE_WORDS, HyperParams, LESSON_HEADER, MEMORY_WORD, RECORD_WORDS};
+use skilltree::math::rng::{StepRandom, Stream, draw_step};
+use skilltree::policy::features::encode;
+use skilltree::policy::hierarchy::{execute, place, sense};
+use skilltree::policy::persistence::extend;
+use skilltree::train::observation::floor_only;
 use skilltree::world::Pose;
 
 const SILENT: &str = "robot.noise={ actuator = 0.0, sonar = 0.0, light = 0.0, compass = 0.0 }";
 
-fn dice(trial: u32, step: u32) -> Dice {
-    roll(Stream { key: [3, 4], skill: 0, trial, step, purpose: 1 })
+fn draws_of(trial: u32, step: u32) -> StepRandom {
+    draw_step(Stream { key: [3, 4], skill: 0, trial, step, purpose: 1 })
 }
 
 /// Degrees from one direction to another, -180 to 180.
@@ -48,7 +48,7 @@ fn turning_in_place_by_steps_of_the_sonar_changes_nothing() {
     let room = Written { walls: vec![[150.0, 20.0, 110.0, 90.0]], ..Written::room(190.0, 130.0) };
     let (shared, field) = (floor_only(&room.world()), room.field());
     let (mut next, mut poses, mut spread) = (stream(31), 0, 0.0_f32);
-    let terms = skilltree::learner::layout::Noise { kind: 0, actuator: 0.0, sonar: 0.0, light: 0.0, compass: 0.0 };
+    let terms = skilltree::layout::Noise { kind: 0, actuator: 0.0, sonar: 0.0, light: 0.0, compass: 0.0 };
     while poses < 150 {
         let at = [next() * 190.0, next() * 130.0];
         let lean = (next() * 15.0) as f32;
@@ -60,7 +60,7 @@ fn turning_in_place_by_steps_of_the_sonar_changes_nothing() {
         poses += 1;
         let look = |heading: f32| {
             let mut scratch = scratch_of(&[]);
-            observe(&shared, &mut scratch.record, &dice(0, 0), at[0] as f32, at[1] as f32, heading, 0, terms);
+            observe(&shared, &mut scratch.record, &draws_of(0, 0), at[0] as f32, at[1] as f32, heading, 0, terms);
             encode(&bench.shared, &mut scratch, &bench.shared.skills[root], false);
             scratch
         };
@@ -150,7 +150,7 @@ struct Memory {
 }
 
 impl Memory {
-    fn take(&mut self, step: usize, record: &[u32], passed: bool, settings: &Settings) {
+    fn take(&mut self, step: usize, record: &[u32], passed: bool, params: &HyperParams) {
         let compass = f64::from(f32::from_bits(record[7]));
         let sonar = readings(record);
         let looking = |direction: f64| {
@@ -159,13 +159,13 @@ impl Memory {
         };
         // 254 inches of free way in both directions count 1, none -1.
         let now = [looking(0.0) + looking(180.0), looking(90.0) + looking(270.0)].map(|sum| sum / 127.0 - 1.0);
-        let past = if step == 0 { 0.0 } else { f64::from(settings.range_mean) };
+        let past = if step == 0 { 0.0 } else { f64::from(params.range_mean) };
         for (mean, now) in self.means.iter_mut().zip(now) {
             *mean = past * *mean + (1.0 - past) * now;
         }
-        self.light = if record[6] & 0xff_ffff != 0 { 1.0 } else { self.light * f64::from(settings.light_trace) };
+        self.light = if record[6] & 0xff_ffff != 0 { 1.0 } else { self.light * f64::from(params.light_trace) };
         let (sine, cosine) = compass.to_radians().sin_cos();
-        self.door = if passed { [1.0, cosine, sine] } else { self.door.map(|d| d * f64::from(settings.door_trace)) };
+        self.door = if passed { [1.0, cosine, sine] } else { self.door.map(|d| d * f64::from(params.door_trace)) };
     }
 }
 
@@ -178,15 +178,15 @@ fn memories_and_doors_along_a_walk() {
         let traces = ["robot.memory={ light = 0.75, doors = 0.875, ranges = 0.6 }", "skill.top.applicable={}"];
         let bench = Bench::new(TREE, &[&[noise, inputs], traces.as_slice()].concat());
         let root = bench.skill("top");
-        let (skill, settings) = (&bench.shared.skills[root], &bench.settings[root]);
-        assert_eq!((settings.light_trace, settings.door_trace, settings.range_mean), (0.75, 0.875, 0.6));
+        let (skill, params) = (&bench.shared.skills[root], &bench.params[root]);
+        assert_eq!((params.light_trace, params.door_trace, params.range_mean), (0.75, 0.875, 0.6));
         let (mut agent, mut scratch) = (Agent::zeroed(), Scratch::default());
         // Heading a little off, so that no reading is equally near to two directions.
         place(&mut agent, &bench.shared, Pose { x: 60.0, y: 62.0, heading: 0.25 });
         let mut expected = Memory { light: 0.0, door: [0.0; 3], means: [0.0; 2] };
         let (mut origin, mut crossings, mut in_between) = (room([60.0, 62.0]), Vec::new(), 0);
         for step in 0..=walk().len() {
-            sense(&mut agent, &bench.shared, &mut scratch, settings, &dice(9, step as u32));
+            sense(&mut agent, &bench.shared, &mut scratch, params, &draws_of(9, step as u32));
             let at = [f64::from(agent.x), f64::from(agent.y)];
             let here = room(at);
             let passed = step > 0 && here.is_some() && here != origin && !in_frame(at);
@@ -196,8 +196,8 @@ fn memories_and_doors_along_a_walk() {
                 crossings.push((origin, here));
                 origin = here;
             }
-            expected.take(step, &scratch.record, passed, settings);
-            extend(&agent, &bench.shared.floor.plan, &mut scratch, skill, settings, root as u32);
+            expected.take(step, &scratch.record, passed, params);
+            extend(&agent, &bench.shared.floor.plan, &mut scratch, skill, params, root as u32);
             encode(&bench.shared, &mut scratch, skill, false);
             let lit = scratch.record[6] & 0xff_ffff != 0;
             let in_room = |number: usize| f64::from(u8::from(here == Some(number)));
@@ -222,7 +222,7 @@ fn memories_and_doors_along_a_walk() {
                 assert!((found - word).abs() < 1.0e-5, "step {step}, input {lane}: {found} for {word}");
             }
             if let Some(action) = walk().get(step) {
-                execute(&mut agent, &bench.shared, settings, *action, &dice(9, step as u32));
+                execute(&mut agent, &bench.shared, params, *action, &draws_of(9, step as u32));
             }
         }
         println!("{crossings:?} {in_between} {}", agent.collisions);
@@ -247,8 +247,8 @@ fn memories_have_their_words_in_the_record() {
     (agent.east_west, agent.north_south, agent.light) = (0.1, 0.2, 0.3);
     (agent.door, agent.door_cosine, agent.door_sine) = (0.4, 0.5, 0.6);
     let mut scratch = Scratch::default();
-    let (plan, settings) = (&bench.shared.skills[root], &bench.settings[root]);
-    extend(&agent, &bench.shared.floor.plan, &mut scratch, plan, settings, root as u32);
+    let (plan, params) = (&bench.shared.skills[root], &bench.params[root]);
+    extend(&agent, &bench.shared.floor.plan, &mut scratch, plan, params, root as u32);
     let words: Vec<f32> = scratch.record[MEMORY_WORD..MEMORY_WORD + 6].iter().map(|w| f32::from_bits(*w)).collect();
     assert_eq!(words, [0.1, 0.2, 0.3, 0.4, 0.5, 0.6]);
 }
@@ -256,21 +256,21 @@ fn memories_have_their_words_in_the_record() {
 // Walls beside the robot.
 
 /// Drives one step and looks; the events.
-fn drive(shared: &Shared, settings: &Settings, pose: Pose, action: u32) -> (Agent, u32) {
+fn drive(shared: &CohortData, params: &HyperParams, pose: Pose, action: u32) -> (Agent, u32) {
     let (mut agent, mut scratch) = (Agent::zeroed(), Scratch::default());
     place(&mut agent, shared, pose);
-    sense(&mut agent, shared, &mut scratch, settings, &dice(0, 0));
+    sense(&mut agent, shared, &mut scratch, params, &draws_of(0, 0));
     assert_eq!(agent.events, 0, "nothing has happened yet");
-    execute(&mut agent, shared, settings, action, &dice(0, 0));
-    sense(&mut agent, shared, &mut scratch, settings, &dice(0, 1));
+    execute(&mut agent, shared, params, action, &draws_of(0, 0));
+    sense(&mut agent, shared, &mut scratch, params, &draws_of(0, 1));
     (agent, agent.events)
 }
 
 #[test]
 fn walls_at_known_distances_are_beside_the_robot() {
     let bench = Bench::new(TREE, &[SILENT]);
-    let settings = &bench.settings[0];
-    assert_eq!((settings.beside_near, settings.beside_far), (15, 30));
+    let params = &bench.params[0];
+    assert_eq!((params.beside_near, params.beside_far), (15, 30));
     let shared = floor_only(&Written::room(400.0, 400.0).world());
     for tenths in 121..400_u16 {
         let distance = f64::from(tenths) / 10.0;
@@ -281,17 +281,17 @@ fn walls_at_known_distances_are_beside_the_robot() {
         let expected = (14.5..30.5).contains(&distance);
         // East along the south wall, which is on the right, and west along it.
         let there = |heading: f32| Pose { x: 200.0, y: distance as f32, heading };
-        let (_, events) = drive(&shared, settings, there(0.0), FORWARD);
+        let (_, events) = drive(&shared, params, there(0.0), FORWARD);
         assert_eq!(events, if expected { BESIDE_RIGHT } else { 0 }, "{distance}");
-        let (_, events) = drive(&shared, settings, there(180.0), FORWARD);
+        let (_, events) = drive(&shared, params, there(180.0), FORWARD);
         assert_eq!(events, if expected { BESIDE_LEFT } else { 0 }, "{distance}");
         // Backing up or turning is not following.
         for action in [0, 1, 2, 3, 5] {
-            assert_eq!(drive(&shared, settings, there(0.0), action).1, 0, "{distance}, action {action}");
+            assert_eq!(drive(&shared, params, there(0.0), action).1, 0, "{distance}, action {action}");
         }
         // Nor is pushing against the wall ahead.
         let corner = Pose { x: 386.0, y: distance as f32, heading: 0.0 };
-        assert_eq!(drive(&shared, settings, corner, FORWARD).1, COLLISION, "{distance}");
+        assert_eq!(drive(&shared, params, corner, FORWARD).1, COLLISION, "{distance}");
     }
 }
 
@@ -306,7 +306,7 @@ fn events_beside_walls_are_those_of_the_geometry() {
     let band = ["robot.beside={ near = 18.0, far = 25.0 }", SILENT];
     for (set, near, far) in [(&band[1..], 15.0, 30.0), (&band[..], 18.0, 25.0)] {
         let bench = Bench::new(TREE, set);
-        let settings = &bench.settings[0];
+        let params = &bench.params[0];
         let (shared, field) = (floor_only(&written.world()), written.field());
         let (mut next, mut counts, mut docked) = (stream(33), [0; 4], 0);
         for _ in 0..6000 {
@@ -315,7 +315,7 @@ fn events_beside_walls_are_those_of_the_geometry() {
             if !field.free(at, 12.01) {
                 continue;
             }
-            let (agent, events) = drive(&shared, settings, pose, FORWARD);
+            let (agent, events) = drive(&shared, params, pose, FORWARD);
             let (end, heading) = ([f64::from(agent.x), f64::from(agent.y)], f64::from(agent.heading));
             let went = ahead(at, heading, 12.0);
             let short = (went[0] - end[0]).hypot(went[1] - end[1]);
@@ -366,7 +366,7 @@ fn lessons_of_skills_that_remember_hold_what_they_do() {
     backend.load(group.cohort(&plan, &group.learners(&plan))).expect("memory");
     reach(&mut backend, DONE);
     let cohort = backend.memory().expect("memory");
-    let settings = &cohort.settings[0];
+    let params = &cohort.params[0];
     let stride = skill.lesson_stride as usize;
     let taught = group.shared.bank.chunks(stride).take(8);
     let tried = cohort.lessons[skill.memory_offset as usize..].chunks(stride).take(30);
@@ -376,7 +376,7 @@ fn lessons_of_skills_that_remember_hold_what_they_do() {
         let mut passed = false;
         assert_eq!(lesson[0], 40, "lesson {number}");
         for (step, record) in lesson[LESSON_HEADER..].chunks(RECORD_WORDS).take(41).enumerate() {
-            expected.take(step, record, passed, settings);
+            expected.take(step, record, passed, params);
             let memory = [&expected.means[..], &[expected.light], &expected.door].concat();
             for (word, expected) in memory.iter().enumerate() {
                 let found = f64::from(f32::from_bits(record[MEMORY_WORD + word]));

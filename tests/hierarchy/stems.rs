@@ -5,14 +5,14 @@ use super::trees::home;
 use skilltree::backend::cpu::CpuBackend;
 use skilltree::backend::{Backend, BackendError, Cohort, Stop, Test};
 use skilltree::config::plan::Plan;
-use skilltree::experiment::family::families;
-use skilltree::experiment::group::{Group, groups};
-use skilltree::experiment::run::{Observer, Options, RunError, run};
-use skilltree::learner::layout::{Cursor, Episode, Robot};
-use skilltree::learner::memory::Shared;
-use skilltree::record::folder::WORLD;
-use skilltree::record::tables::{EVALUATIONS, TRIALS, read_evaluations, read_trials};
-use skilltree::record::{Provenance, RunFolder};
+use skilltree::env::workgroup::CohortData;
+use skilltree::layout::{Episode, LearnerState, Robot};
+use skilltree::run_folder::folder::WORLD;
+use skilltree::run_folder::tables::{EVALUATIONS, TRIALS, read_evaluations, read_trials};
+use skilltree::run_folder::{Provenance, RunFolder};
+use skilltree::train::batch_group::{Group, groups};
+use skilltree::train::pretraining::families;
+use skilltree::train::run::{Observer, Options, RunError, run};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::Path;
@@ -97,7 +97,7 @@ impl Backend for Frail {
         self.inner.load(cohort)
     }
 
-    fn advance(&mut self, stop: Stop) -> Result<&[Cursor], BackendError> {
+    fn advance(&mut self, stop: Stop) -> Result<&[LearnerState], BackendError> {
         let lost = BackendError::Device { kernel: "advance", message: "pulled out".to_owned() };
         self.left = self.left.checked_sub(1).ok_or(lost)?;
         self.inner.advance(stop)
@@ -115,8 +115,8 @@ impl Backend for Frail {
         self.inner.memory()
     }
 
-    fn step(&mut self, shared: &Shared, robots: &mut [Robot], quanta: u32) -> Result<(), BackendError> {
-        self.inner.step(shared, robots, quanta)
+    fn step(&mut self, shared: &CohortData, robots: &mut [Robot], iterations: u32) -> Result<(), BackendError> {
+        self.inner.step(shared, robots, iterations)
     }
 }
 
@@ -146,18 +146,18 @@ pub(crate) fn left(dir: &Path, arm: &str) -> BTreeMap<String, Vec<u8>> {
     // Rows name arms and skills by their places in lists that depend on the other arms.
     let (names, rows) = read_trials(&dir.join(TRIALS)).expect("trials");
     let own = rows.iter().filter(|row| names.arms[row.arm as usize] == arm);
-    let say = |row: &skilltree::record::TrialRow| {
+    let say = |row: &skilltree::run_folder::TrialRow| {
         let skill = &names.skills[row.skill as usize];
-        let bare = skilltree::record::TrialRow { arm: 0, skill: 0, ..*row };
+        let bare = skilltree::run_folder::TrialRow { arm: 0, skill: 0, ..*row };
         format!("{skill} {bare:?}\n")
     };
     found.insert(TRIALS.to_owned(), own.map(say).collect::<String>().into_bytes());
     let (names, rows) = read_evaluations(&dir.join(EVALUATIONS)).expect("tests");
     let own = rows.iter().filter(|row| names.arms[row.arm as usize] == arm);
-    let say = |row: &skilltree::record::EvaluationRow| {
+    let say = |row: &skilltree::run_folder::EvaluationRow| {
         let words =
             [&names.skills[row.skill as usize], &names.variants[row.variant as usize], &names.rooms[row.room as usize]];
-        let bare = skilltree::record::EvaluationRow { arm: 0, skill: 0, variant: 0, room: 0, ..*row };
+        let bare = skilltree::run_folder::EvaluationRow { arm: 0, skill: 0, variant: 0, room: 0, ..*row };
         format!("{words:?} {bare:?}\n")
     };
     found.insert(EVALUATIONS.to_owned(), own.map(say).collect::<String>().into_bytes());

@@ -3,9 +3,9 @@
 use super::stems::{ARMS, NAMES, left, short};
 use skilltree::backend::cpu::CpuBackend;
 use skilltree::config::plan::Plan;
-use skilltree::experiment::group::{Group, groups};
-use skilltree::experiment::run::{Observer, Options, RunError, run};
-use skilltree::record::{Provenance, RecordError, RunFolder};
+use skilltree::run_folder::{Provenance, RecordError, RunFolder};
+use skilltree::train::batch_group::{Group, groups};
+use skilltree::train::run::{Observer, Options, RunError, run};
 use std::path::Path;
 use std::time::Duration;
 use tempfile::TempDir;

@@ -6,12 +6,12 @@ use bytemuck::Zeroable;
 use skilltree::backend::cpu::CpuBackend;
 use skilltree::backend::{Backend, Cohort, Stop, Test};
 use skilltree::config::plan::{Child, Plan, Skill, Threshold};
-use skilltree::evaluate::{STATE_ACHIEVED, evaluate};
-use skilltree::experiment::group::{Group, groups};
-use skilltree::learner::layout::{Dispatch, Episode, LANES, LESSON_HEADER, RECORD_WORDS, ROW_WORDS, VALUE_WORD};
-use skilltree::learner::phase::{PHASE_DONE, PHASE_REPLAY, PHASE_TEACH};
-use skilltree::lesson::record::ENDED;
-use skilltree::skill::persist::IDLE;
+use skilltree::kernels::evaluate::{STATE_ACHIEVED, evaluate};
+use skilltree::layout::phase::{PHASE_DONE, PHASE_REPLAY, PHASE_TEACH};
+use skilltree::layout::{Dispatch, Episode, LANES, LESSON_HEADER, RECORD_WORDS, ROW_WORDS, VALUE_WORD};
+use skilltree::learn::lesson::ENDED;
+use skilltree::policy::persistence::IDLE;
+use skilltree::train::batch_group::{Group, groups};
 use std::collections::BTreeMap;
 
 /// Home is docked to the charger; from the other room the way there leads through the door.
@@ -109,7 +109,7 @@ pub(crate) fn only_group(plan: &Plan) -> Group {
 }
 
 pub(crate) fn reach(backend: &mut CpuBackend, stop: Stop) {
-    while !backend.advance(stop).expect("the CPU advances").iter().all(|cursor| stop.holds(cursor)) {}
+    while !backend.advance(stop).expect("the CPU advances").iter().all(|state| stop.holds(state)) {}
 }
 
 /// A cohort that has learned everything, and its tests of each skill before the first trial and after the last.
@@ -139,10 +139,10 @@ fn three_levels_learn_to_go_home() {
     let (cohort, tests) = learned(&plan, &group);
     let names: Vec<&str> = plan.arms[0].skills.iter().map(|skill| skill.name.as_str()).collect();
     assert_eq!(names, ["dock", "pass-door", "follow-right", "follow-left", "leave", "go-home"]);
-    for (learner, cursor) in cohort.cursors.iter().enumerate() {
-        assert_eq!(cursor.phase, PHASE_DONE, "learner {learner}");
+    for (learner, state) in cohort.states.iter().enumerate() {
+        assert_eq!(state.phase, PHASE_DONE, "learner {learner}");
         // Every skill has its trials in the table, but the mirror image, which needs none.
-        let rows = &cohort.rows[learner * cohort.rows_stride..][..cursor.rows as usize * ROW_WORDS];
+        let rows = &cohort.rows[learner * cohort.rows_stride..][..state.rows as usize * ROW_WORDS];
         let mut expected = Vec::new();
         for (number, skill) in (0..).zip(&plan.arms[0].skills) {
             expected.extend((0..skill.lessons).map(|trial| (number, trial, 1)));
@@ -195,12 +195,12 @@ fn children_of_children_execute() {
     for number in 0..160 {
         let learner = (number % 4) as usize;
         let nets = &cohort.nets[learner * cohort.nets_stride..][..cohort.nets_stride];
-        let settings = &cohort.settings[learner * cohort.skills..][..cohort.skills];
+        let params = &cohort.params[learner * cohort.skills..][..cohort.skills];
         let mut episode = Episode::zeroed();
-        let dispatch = Dispatch { quanta: 1, test_skill: home as u32, ..Dispatch::zeroed() };
+        let dispatch = Dispatch { iterations: 1, test_skill: home as u32, ..Dispatch::zeroed() };
         while episode.state < STATE_ACHIEVED {
             let before = episode.agent.step;
-            evaluate(&mut episode, &cohort.shared, settings, nets, &dispatch, number);
+            evaluate(&mut episode, &cohort.shared, params, nets, &dispatch, number);
             let agent = &episode.agent;
             if agent.step == before {
                 continue;
@@ -231,10 +231,10 @@ fn children_of_children_execute() {
 /// The first words of a learner's memory of a skill: its trials, oldest slot first.
 fn trials(cohort: &Cohort, learner: usize, skill: usize) -> Vec<&[u32]> {
     let plan = &cohort.shared.skills[skill];
-    let settings = &cohort.settings[learner * cohort.skills + skill];
+    let params = &cohort.params[learner * cohort.skills + skill];
     let lessons = &cohort.lessons[learner * cohort.lessons_stride..][..cohort.lessons_stride];
     let slots = lessons[plan.memory_offset as usize..].chunks(plan.lesson_stride as usize);
-    slots.take(settings.trials.min(settings.memory) as usize).collect()
+    slots.take(params.trials.min(params.memory) as usize).collect()
 }
 
 /// Every remembered trial of both skills over skills, word by word: what the rules allow, what was applicable, what the
@@ -259,7 +259,7 @@ fn remembered_trials_follow_the_rules() {
             let nets = &cohort.nets[learner * cohort.nets_stride..][..cohort.nets_stride];
             let tree = Tree64::new(skills, 2, &cohort.shared.skills, nets);
             for name in ["leave", "go-home"] {
-                let (number, settings) = (number(&plan, name), &skills[number(&plan, name)]);
+                let (number, params) = (number(&plan, name), &skills[number(&plan, name)]);
                 for trial in trials(&cohort, learner, number) {
                     let records: Vec<&[u32]> =
                         trial[LESSON_HEADER..].chunks(RECORD_WORDS).take(trial[0] as usize + 1).collect();
@@ -267,22 +267,22 @@ fn remembered_trials_follow_the_rules() {
                         Child::Skill(below) => Choice::Skill(members(skills[*below].ends)),
                         Child::Action(action) => Choice::Action(*action as u32),
                     };
-                    let persistence = settings.persistence;
+                    let persistence = params.persistence;
                     let rules = Rules {
                         persist: persistence.training,
                         applicability: persistence.applicability,
                         interrupt: persistence.interrupt,
                         patience: (persistence.decision_steps > 0).then_some(persistence.decision_steps),
                     };
-                    let choices = settings.children.iter().map(goal).collect();
+                    let choices = params.children.iter().map(goal).collect();
                     let mut chooser = Chooser { choices, rules, running: None, before: Set::new() };
                     let (mut happened, mut earned) = (Set::new(), 0.0);
                     for (step, record) in records.iter().enumerate() {
                         let says = || format!("{name}, learner {learner}, step {step}: {chooser:?}");
                         let worths = tree.worths(number, record);
                         let applicable = members(record[10] >> 8 & 0xff);
-                        for (child, threshold) in settings.applicable.iter().enumerate() {
-                            let (word, below) = (f32::from_bits(record[VALUE_WORD + child]), &settings.children[child]);
+                        for (child, threshold) in params.applicable.iter().enumerate() {
+                            let (word, below) = (f32::from_bits(record[VALUE_WORD + child]), &params.children[child]);
                             let over = *below == Child::Skill(super::trees::number(&plan, "leave"));
                             // What a skill over skills is worth depends on what it is doing.
                             let known = !over || chooser.running.is_none_or(|(running, _)| running != child);
@@ -317,10 +317,10 @@ fn remembered_trials_follow_the_rules() {
                             break;
                         }
                         happened = members(word >> 24 & 0x7f);
-                        let pay: f32 = happened.iter().map(|event| settings.reward[*event]).sum();
+                        let pay: f32 = happened.iter().map(|event| params.reward[*event]).sum();
                         assert_eq!(f32::from_bits(record[9]), pay, "{}", says());
                         earned += pay;
-                        let ended = happened.iter().any(|event| settings.ends >> event & 1 == 1);
+                        let ended = happened.iter().any(|event| params.ends >> event & 1 == 1);
                         assert_eq!(ended, step + 1 == trial[0] as usize && trial[1] == ENDED, "{}", says());
                         let child = (word & 0xff) as usize;
                         assert!(allowed.contains(&child), "{}", says());
@@ -329,11 +329,11 @@ fn remembered_trials_follow_the_rules() {
                         }
                         steps += 1;
                         held += u32::from(reasons.is_empty());
-                        applied += u32::from(candidates.len() < settings.children.len());
+                        applied += u32::from(candidates.len() < params.children.len());
                         chooser.take(child, !reasons.is_empty(), applicable);
                     }
                     assert_eq!(f32::from_bits(trial[2]), earned);
-                    assert!(trial[1] == ENDED || trial[0] == settings.max_steps);
+                    assert!(trial[1] == ENDED || trial[0] == params.max_steps);
                 }
             }
         }
@@ -397,14 +397,14 @@ fn half_of_the_replays_are_seen_in_a_mirror() {
         let mut backend = CpuBackend::new(1, Some(1)).expect("threads");
         backend.load(group.cohort(&plan, &group.learners(&plan))).expect("memory");
         let mut later = BTreeMap::<(usize, u32, u32), (u32, u32)>::new();
-        while !backend.advance(DONE).expect("the CPU advances").iter().all(|cursor| DONE.holds(cursor)) {
-            for (learner, cursor) in backend.memory().expect("memory").cursors.iter().enumerate() {
-                if cursor.phase == PHASE_TEACH && cursor.replay > 0 {
-                    let pass = (cursor.replay - 1) / 3;
-                    assert_eq!(cursor.replay_mirrored == 1, mirror && pass % 2 == 1, "replay {}", cursor.replay);
-                } else if cursor.phase == PHASE_REPLAY && cursor.replay > 0 {
-                    let key = (learner, cursor.trial, cursor.replay);
-                    later.insert(key, (cursor.replay_taught, cursor.replay_mirrored));
+        while !backend.advance(DONE).expect("the CPU advances").iter().all(|state| DONE.holds(state)) {
+            for (learner, state) in backend.memory().expect("memory").states.iter().enumerate() {
+                if state.phase == PHASE_TEACH && state.replay > 0 {
+                    let pass = (state.replay - 1) / 3;
+                    assert_eq!(state.replay_mirrored == 1, mirror && pass % 2 == 1, "replay {}", state.replay);
+                } else if state.phase == PHASE_REPLAY && state.replay > 0 {
+                    let key = (learner, state.trial, state.replay);
+                    later.insert(key, (state.replay_taught, state.replay_mirrored));
                 }
             }
         }

@@ -2,7 +2,6 @@
 
 use crate::close;
 use crate::made::Made;
-use skilltree::record::{Trajectory, TrajectoryPoint};
 use skilltree::report::alterations::differences;
 use skilltree::report::comparison::{Comparison, median_actions, within};
 use skilltree::report::figure2;
@@ -12,6 +11,7 @@ use skilltree::report::statistics::{bootstrap_ratio, ratio, sorted};
 use skilltree::report::summary::{Score, Series};
 use skilltree::report::trace::{draw, pieces};
 use skilltree::report::training::{Tally, pooled};
+use skilltree::run_folder::{Trajectory, TrajectoryPoint};
 use skilltree::world::load;
 use std::path::Path;
 

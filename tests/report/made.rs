@@ -1,9 +1,9 @@
 //! Tables made by hand.
 
-use skilltree::record::{EvaluationRow, Names, TrialRow};
 use skilltree::report::claims::{Verdict, judge};
 use skilltree::report::summary::{Summary, summarise};
 use skilltree::report::training::{self, Training};
+use skilltree::run_folder::{EvaluationRow, Names, TrialRow};
 
 /// Trials and actions before a test, and per room: name, test trials, successes.
 pub(crate) type Test<'a> = (u32, u32, &'a [(&'a str, u32, u32)]);

@@ -7,12 +7,12 @@ mod pages;
 mod sweep;
 
 use glam::Vec2;
-use skilltree::record::places::write_places;
-use skilltree::record::tables::write_evaluations;
-use skilltree::record::{EvaluationRow, Names, PlaceReading, Provenance, RecordError, RunFolder};
 use skilltree::report::resample::Resampler;
 use skilltree::report::summary::summarise;
 use skilltree::report::{ReportError, curves, raster, write};
+use skilltree::run_folder::sensor_readings::write_places;
+use skilltree::run_folder::tables::write_evaluations;
+use skilltree::run_folder::{EvaluationRow, Names, PlaceReading, Provenance, RecordError, RunFolder};
 use skilltree::world::{Pose, World, load};
 use std::fs;
 use std::path::{Path, PathBuf};

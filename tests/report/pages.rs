@@ -3,10 +3,10 @@
 use crate::comparison::example;
 use crate::made::Made;
 use crate::{OFFICE, scratch};
-use skilltree::record::tables::{write_evaluations, write_trials};
-use skilltree::record::trajectories::write_trajectories;
-use skilltree::record::{Provenance, RunFolder, Trajectory};
 use skilltree::report::{text, write};
+use skilltree::run_folder::tables::{write_evaluations, write_trials};
+use skilltree::run_folder::trajectories::write_trajectories;
+use skilltree::run_folder::{Provenance, RunFolder, Trajectory};
 use std::fs;
 use std::path::Path;
 

@@ -1,6 +1,6 @@
 //! Observations that no world gave.
 
-use skilltree::learner::layout::BASE_WORDS;
+use skilltree::layout::BASE_WORDS;
 
 /// Senses of a made-up observation: the first words of a record.
 pub(crate) fn made_up(next: &mut impl FnMut() -> f64) -> [u32; BASE_WORDS] {

@@ -1,7 +1,7 @@
 //! A disk in memory that knows what would survive a power cut: the content that was synced of files whose entries were
 //! synced, up to the root, and nothing else.
 
-use skilltree::record::disk::{Disk, Kind, Lock, TryLockError, Writing};
+use skilltree::run_folder::file_system::{Disk, Kind, Lock, TryLockError, Writing};
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::io::{self, Cursor, ErrorKind, Read, Write};

@@ -3,10 +3,10 @@
 use skilltree::backend::cpu::CpuBackend;
 use skilltree::config::plan::Plan;
 use skilltree::config::{Overrides, load};
-use skilltree::experiment::group::{Group, groups};
-use skilltree::experiment::run::{Observer, Options, RunError, run};
-use skilltree::record::disk::Disk;
-use skilltree::record::{Provenance, RunFolder, State};
+use skilltree::run_folder::file_system::Disk;
+use skilltree::run_folder::{Provenance, RunFolder, State};
+use skilltree::train::batch_group::{Group, groups};
+use skilltree::train::run::{Observer, Options, RunError, run};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 

@@ -1,14 +1,14 @@
 //! Is this adapter exact? The shipped functions answer the same questions on the adapter and in Rust, and
 //! the answers are compared as bits.
 
-use super::canary::{self, BOUNDS, canary};
+use super::arithmetic_check::{ANSWER_WORDS, Answer, NAMES, QUESTION_WORDS, Question, SUBNORMAL, probe};
 use super::device::Device;
+use super::loop_limit::{self, BOUNDS, canary};
 use super::pipeline::Pipeline;
-use super::probe::{ANSWER_WORDS, Answer, NAMES, QUESTION_WORDS, Question, SUBNORMAL, probe};
 use super::source::{CANARY, PROBE};
 use crate::backend::BackendError;
 use crate::backend::parity::UNWRITTEN;
-use crate::learner::layout::LANES;
+use crate::layout::LANES;
 use crate::math::rng::philox;
 use bytemuck::Zeroable;
 
@@ -39,7 +39,7 @@ pub fn examine(device: &Device) -> Result<Verdict, BackendError> {
     let counts = count_turns(device)?;
     let expected = canary(BOUNDS);
     if counts[2] != expected[2] {
-        let message = format!("the driver ends loops after fewer than {} turns", canary::SAFE_TURNS);
+        let message = format!("the driver ends loops after fewer than {} turns", loop_limit::SAFE_TURNS);
         return Err(BackendError::Device { kernel: CANARY.name, message });
     }
     if counts != expected {

@@ -1,9 +1,9 @@
 //! A kernel ready to run: its layout is read from the checked module, never guessed by the driver.
 
 use super::device::Device;
-use super::held::{HELD, held};
 use super::source::Kernel;
 use super::spirv::{Overrides, check, compile};
+use super::workgroup_weights::{HELD, held};
 use crate::backend::BackendError;
 
 /// A compute pipeline and the layout of its one bind group.
@@ -49,7 +49,7 @@ impl Pipeline {
             let words = compile(&checked, &kernel, &overrides).map_err(failed)?;
             let entry_points = vec![wgpu::PassthroughShaderEntryPoint {
                 name: kernel.name.into(),
-                workgroup_size: (crate::learner::layout::LANES as u32, 1, 1),
+                workgroup_size: (crate::layout::LANES as u32, 1, 1),
             }];
             let descriptor = wgpu::ShaderModuleDescriptorPassthrough {
                 label: Some(kernel.name),

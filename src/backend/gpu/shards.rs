@@ -4,8 +4,8 @@
 
 use super::device::{Device, is_software};
 use crate::backend::{BackendError, Cohort, memory};
-use crate::learner::layout::{Cursor, Settings, SkillPlan, WorldPlan};
-use crate::learner::memory::Shared;
+use crate::env::workgroup::CohortData;
+use crate::layout::{HyperParams, LearnerState, SkillShape, WorldUniform};
 use std::ops::Range;
 use wgpu::BufferUsages;
 
@@ -24,7 +24,7 @@ pub struct Common {
     /// The floor plan, a uniform.
     pub world: wgpu::Buffer,
     /// Segment lists, regions, tables.
-    pub atlas: wgpu::Buffer,
+    pub tables: wgpu::Buffer,
     /// Shapes of the skills.
     pub skills: wgpu::Buffer,
     /// Taught lessons.
@@ -36,16 +36,16 @@ impl Common {
     ///
     /// # Errors
     /// Where the device has no room.
-    pub fn new(device: &Device, kernel: &'static str, shared: &Shared) -> Result<Self, BackendError> {
-        let world: &WorldPlan = &shared.floor.plan;
+    pub fn new(device: &Device, kernel: &'static str, shared: &CohortData) -> Result<Self, BackendError> {
+        let world: &WorldUniform = &shared.floor.plan;
         let buffer = |bytes: &[u8], least: usize, usage| {
             let buffer = device.buffer(kernel, bytes.len().max(least) as u64, usage)?;
             device.upload(kernel, &buffer, bytes).map(|()| buffer)
         };
         Ok(Self {
             world: buffer(bytemuck::bytes_of(world), 0, BufferUsages::UNIFORM)?,
-            atlas: buffer(bytemuck::cast_slice(&shared.atlas), 4, BufferUsages::STORAGE)?,
-            skills: buffer(bytemuck::cast_slice(&shared.skills), size_of::<SkillPlan>(), BufferUsages::STORAGE)?,
+            tables: buffer(bytemuck::cast_slice(&shared.tables), 4, BufferUsages::STORAGE)?,
+            skills: buffer(bytemuck::cast_slice(&shared.skills), size_of::<SkillShape>(), BufferUsages::STORAGE)?,
             bank: buffer(bytemuck::cast_slice(&shared.bank), 4, BufferUsages::STORAGE)?,
         })
     }
@@ -56,10 +56,10 @@ impl Common {
 pub struct Shard {
     /// Which learners of the cohort.
     pub learners: Range<usize>,
-    /// Their settings.
-    pub settings: wgpu::Buffer,
-    /// Their cursors.
-    pub cursors: wgpu::Buffer,
+    /// Their params.
+    pub params: wgpu::Buffer,
+    /// Their states.
+    pub states: wgpu::Buffer,
     /// Their nets.
     pub nets: wgpu::Buffer,
     /// Their lessons.
@@ -80,8 +80,8 @@ impl Shard {
             device.upload(COHORT, &buffer, bytes).map(|()| buffer)
         };
         Ok(Self {
-            settings: buffer(bytemuck::cast_slice(&cohort.settings[part(&learners, cohort.skills)]))?,
-            cursors: buffer(bytemuck::cast_slice(&cohort.cursors[learners.clone()]))?,
+            params: buffer(bytemuck::cast_slice(&cohort.params[part(&learners, cohort.skills)]))?,
+            states: buffer(bytemuck::cast_slice(&cohort.states[learners.clone()]))?,
             nets: buffer(bytemuck::cast_slice(&cohort.nets[part(&learners, cohort.nets_stride)]))?,
             lessons: buffer(bytemuck::cast_slice(&cohort.lessons[part(&learners, cohort.lessons_stride)]))?,
             rows: buffer(bytemuck::cast_slice(&cohort.rows[part(&learners, cohort.rows_stride)]))?,
@@ -89,13 +89,13 @@ impl Shard {
         })
     }
 
-    /// Reads the cursors back.
+    /// Reads the states back.
     ///
     /// # Errors
     /// Where the device fails.
     pub fn read_cursors(&self, device: &Device, cohort: &mut Cohort) -> Result<(), BackendError> {
-        let cursors = &mut cohort.cursors[self.learners.clone()];
-        device.download(COHORT, &self.cursors, bytemuck::cast_slice_mut(cursors))
+        let states = &mut cohort.states[self.learners.clone()];
+        device.download(COHORT, &self.states, bytemuck::cast_slice_mut(states))
     }
 
     /// Reads everything back that kernels write.
@@ -130,28 +130,28 @@ pub fn fitting(device: &Device, bytes_per_learner: usize) -> Result<usize, Backe
 /// # Errors
 /// [`BackendError::TooLarge`] where a learner exceeds a buffer, or the cohort the memory.
 pub fn upload(device: &Device, cohort: &Cohort, shard: usize) -> Result<Vec<Shard>, BackendError> {
-    let learners = cohort.cursors.len();
+    let learners = cohort.states.len();
     let too_large = |message: String| BackendError::TooLarge { learners, message };
     let limits = device.device.limits();
     let largest = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
     for (bytes, what) in [
         (size_of_val(&cohort.shared.bank[..]), "the taught lessons"),
-        (size_of_val(&cohort.shared.atlas[..]), "the atlas"),
+        (size_of_val(&cohort.shared.tables[..]), "the tables"),
     ] {
         if bytes as u64 > largest {
             return Err(too_large(format!("{what} take {bytes} bytes, a buffer holds {largest}")));
         }
     }
     let widest = [
-        cohort.skills * size_of::<Settings>(),
-        size_of::<Cursor>(),
+        cohort.skills * size_of::<HyperParams>(),
+        size_of::<LearnerState>(),
         4 * cohort.nets_stride,
         4 * cohort.lessons_stride,
         4 * cohort.rows_stride,
     ];
     let widest = widest.into_iter().max().unwrap_or(1).max(1) as u64;
     // Kernels count words in 32 bits, and a dispatch counts workgroups in 16.
-    let most = (largest.min(u64::from(u32::MAX)) / widest).min(u64::from(super::governor::GROUPS)) as usize;
+    let most = (largest.min(u64::from(u32::MAX)) / widest).min(u64::from(super::dispatch_size::GROUPS)) as usize;
     if most == 0 {
         return Err(BackendError::NoRoom { bytes: widest, room: largest });
     }
@@ -179,5 +179,5 @@ pub fn upload(device: &Device, cohort: &Cohort, shard: usize) -> Result<Vec<Shar
 /// Bytes of a cohort on the device.
 fn bytes(cohort: &Cohort) -> u64 {
     let words = cohort.nets.len() + cohort.lessons.len() + cohort.rows.len() + cohort.shared.bank.len();
-    (4 * words + size_of_val(&cohort.settings[..]) + size_of_val(&cohort.cursors[..])) as u64
+    (4 * words + size_of_val(&cohort.params[..]) + size_of_val(&cohort.states[..])) as u64
 }

@@ -1,6 +1,6 @@
 //! The text of every shipped kernel: an ordered list of parts, opened by the shared constants and structs.
 
-use crate::learner::prelude::prelude;
+use crate::layout::prelude::prelude;
 
 /// One WGSL file.
 #[derive(Debug, Clone, Copy)]
@@ -39,31 +39,31 @@ impl Kernel {
 
 const RNG: Part = part!("math/rng.wgsl");
 const FUNCTIONS: Part = part!("math/functions.wgsl");
-const LANES: Part = part!("math/lanes.wgsl");
-const MOVE: Part = part!("robot/move.wgsl");
-const COLLIDE: Part = part!("robot/collide.wgsl");
-const SONAR: Part = part!("robot/sonar.wgsl");
-const LIGHT: Part = part!("robot/light.wgsl");
-const NOISE: Part = part!("robot/noise.wgsl");
-const ACT: Part = part!("skill/act.wgsl");
-const OBSERVE: Part = part!("skill/observe.wgsl");
-const REMEMBER: Part = part!("skill/remember.wgsl");
-const ENCODE: Part = part!("skill/encode.wgsl");
-const CONSULT: Part = part!("skill/consult.wgsl");
-const PERSIST: Part = part!("skill/persist.wgsl");
-const REWARD: Part = part!("skill/reward.wgsl");
-const CHOOSE: Part = part!("skill/choose.wgsl");
-const START: Part = part!("skill/start.wgsl");
+const LANES: Part = part!("math/reduce.wgsl");
+const MOVE: Part = part!("env/motion.wgsl");
+const COLLIDE: Part = part!("env/contact.wgsl");
+const SONAR: Part = part!("env/sonar.wgsl");
+const LIGHT: Part = part!("env/light.wgsl");
+const NOISE: Part = part!("env/noise.wgsl");
+const ACT: Part = part!("policy/hierarchy.wgsl");
+const OBSERVE: Part = part!("env/observe.wgsl");
+const REMEMBER: Part = part!("env/memory.wgsl");
+const ENCODE: Part = part!("policy/features.wgsl");
+const CONSULT: Part = part!("policy/planner_table.wgsl");
+const PERSIST: Part = part!("policy/persistence.wgsl");
+const REWARD: Part = part!("env/events.wgsl");
+const CHOOSE: Part = part!("policy/select.wgsl");
+const START: Part = part!("env/reset.wgsl");
 const FORWARD: Part = part!("qnet/forward.wgsl");
 const BACKWARD: Part = part!("qnet/backward.wgsl");
-const RECORD: Part = part!("lesson/record.wgsl");
-const REPLAY: Part = part!("lesson/replay.wgsl");
+const RECORD: Part = part!("learn/lesson.wgsl");
+const REPLAY: Part = part!("learn/td_lambda.wgsl");
 
 /// Moves learners on.
 pub const ADVANCE: Kernel = Kernel {
     name: "advance",
     parts: &[
-        part!("advance.wgsl"),
+        part!("kernels/train.wgsl"),
         RNG,
         FUNCTIONS,
         LANES,
@@ -92,7 +92,7 @@ pub const ADVANCE: Kernel = Kernel {
 pub const EVALUATE: Kernel = Kernel {
     name: "evaluate",
     parts: &[
-        part!("evaluate.wgsl"),
+        part!("kernels/evaluate.wgsl"),
         RNG,
         FUNCTIONS,
         LANES,
@@ -115,14 +115,17 @@ pub const EVALUATE: Kernel = Kernel {
 };
 
 /// Moves robots under given actions.
-pub const STEP: Kernel =
-    Kernel { name: "step", parts: &[part!("step.wgsl"), RNG, FUNCTIONS, LANES, MOVE, COLLIDE, SONAR, LIGHT, OBSERVE] };
+pub const STEP: Kernel = Kernel {
+    name: "step",
+    parts: &[part!("kernels/step.wgsl"), RNG, FUNCTIONS, LANES, MOVE, COLLIDE, SONAR, LIGHT, OBSERVE],
+};
 
 /// Asks an adapter for the bits of the shipped arithmetic.
-pub const PROBE: Kernel = Kernel { name: "probe", parts: &[part!("backend/gpu/probe.wgsl"), RNG, FUNCTIONS, LANES] };
+pub const PROBE: Kernel =
+    Kernel { name: "probe", parts: &[part!("backend/gpu/arithmetic_check.wgsl"), RNG, FUNCTIONS, LANES] };
 
 /// Counts how many turns a loop really takes.
-pub const CANARY: Kernel = Kernel { name: "canary", parts: &[part!("backend/gpu/canary.wgsl")] };
+pub const CANARY: Kernel = Kernel { name: "canary", parts: &[part!("backend/gpu/loop_limit.wgsl")] };
 
 /// Every shipped kernel.
 pub const KERNELS: &[Kernel] = &[ADVANCE, EVALUATE, STEP, PROBE, CANARY];

@@ -6,7 +6,7 @@ use crate::backend::cpu::CpuBackend;
 use crate::bench::replay::{Drill, Nets, encode};
 use crate::bench::workload::{self, DOCKING};
 use crate::bench::{BenchError, same};
-use crate::learner::layout::{BASE_WORDS, LANES, LESSON_HEADER};
+use crate::layout::{BASE_WORDS, LANES, LESSON_HEADER};
 use serde_json::{Map, Value, json};
 
 /// The layers of a net as it begins.
@@ -37,8 +37,8 @@ pub(super) fn replay(learners: u32) -> Result<(Vec<Tensor>, Map<String, Value>),
     let set = ["arms=[\"taught-adam\"]", "teacher.episodes=1", "skill.dock.trials=0", &passes];
     let plan = workload::plan(DOCKING, &set, learners)?;
     let drill = Drill::new(&plan)?;
-    let (skill, shared, settings) = (*drill.skill(), &drill.cohort().shared, *drill.settings(0));
-    let (bank, steps, inputs) = (skill.bank_lessons as usize, settings.max_steps as usize, skill.inputs as usize);
+    let (skill, shared, params) = (*drill.skill(), &drill.cohort().shared, *drill.params(0));
+    let (bank, steps, inputs) = (skill.bank_lessons as usize, params.max_steps as usize, skill.inputs as usize);
     let (mut length, mut input) = (vec![0; bank], vec![0.0; bank * steps * inputs]);
     let (mut child, mut reward) = (vec![0; bank * steps], vec![0.0; bank * steps]);
     for lesson in 0..bank {
@@ -48,13 +48,13 @@ pub(super) fn replay(learners: u32) -> Result<(Vec<Tensor>, Map<String, Value>),
         for (step, record) in words[LESSON_HEADER..].as_chunks::<BASE_WORDS>().0[..words[0] as usize].iter().enumerate()
         {
             let row = lesson * steps + step;
-            input[row * inputs..(row + 1) * inputs].copy_from_slice(&encode(record, &skill, &shared.atlas));
+            input[row * inputs..(row + 1) * inputs].copy_from_slice(&encode(record, &skill, &shared.tables));
             child[row] = (record[8] & 0xff) as i32;
-            reward[row] = f32::from_bits(record[9]) * settings.value_scale;
+            reward[row] = f32::from_bits(record[9]) * params.value_scale;
         }
     }
     let given: Vec<i32> = (0..learners as usize)
-        .flat_map(|learner| (0..settings.lessons).map(move |number| (learner, number)))
+        .flat_map(|learner| (0..params.lessons).map(move |number| (learner, number)))
         .map(|(learner, number)| drill.lesson_of(learner, number) - skill.bank_offset as usize)
         .map(|word| (word / skill.lesson_stride as usize) as i32)
         .collect();
@@ -73,7 +73,7 @@ pub(super) fn replay(learners: u32) -> Result<(Vec<Tensor>, Map<String, Value>),
     same("replay", ("cpu", bytemuck::cast_slice(&ours)), ("scalar", bytemuck::cast_slice(&all)))?;
 
     let (learners, children) = (learners as usize, skill.children as usize);
-    let lessons = settings.lessons as usize;
+    let lessons = params.lessons as usize;
     let mut tensors = vec![
         Tensor::codes(("lesson.length", "", "steps of each lesson in the bank"), &[bank], &length),
         Tensor::floats(
@@ -94,13 +94,13 @@ pub(super) fn replay(learners: u32) -> Result<(Vec<Tensor>, Map<String, Value>),
     let numbers = json!({
         "passes": PASSES,
         "transitions": drill.transitions(PASSES),
-        "gamma": settings.gamma,
-        "lambda": settings.lambda,
-        "rate": settings.rate,
-        "beta1": settings.beta1,
-        "beta2": settings.beta2,
-        "epsilon2": settings.epsilon2,
-        "target_limit": settings.target_limit,
+        "gamma": params.gamma,
+        "lambda": params.lambda,
+        "rate": params.rate,
+        "beta1": params.beta1,
+        "beta2": params.beta2,
+        "epsilon2": params.epsilon2,
+        "target_limit": params.target_limit,
         "hidden": LANES,
     });
     Ok((tensors, object(numbers)))

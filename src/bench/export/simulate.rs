@@ -5,7 +5,7 @@ use crate::backend::cpu::CpuBackend;
 use crate::bench::simulate::{StepNoise, Walk};
 use crate::bench::workload::{self, DOCKING};
 use crate::bench::{BenchError, same};
-use crate::experiment::senses::Senses;
+use crate::train::observation::Senses;
 use safetensors::tensor::Dtype;
 use serde_json::{Map, Value, json};
 

@@ -1,12 +1,12 @@
 //! One axis: a key, and the values that it takes.
 
 use super::MOST;
-use super::names::Names;
-use crate::config::error::ConfigError;
+use super::allowed_keys::Names;
 use crate::config::keys::Allowed;
 use crate::config::plan::Scale;
-use crate::config::read::Item;
-use crate::config::tree::{Entry, Node, Origin, Value};
+use crate::toml::document::{Entry, Node, Origin, Value};
+use crate::toml::error::ConfigError;
+use crate::toml::reader::Item;
 
 /// Key of an axis that lists its values beside a label.
 pub(super) const VALUES: &str = "values";

@@ -10,24 +10,25 @@
 //! skill.recharge.applicable.dock = { values = [0.1, 0.2], label = "dock threshold" }
 //! ```
 //!
-//! `axis` reads one of them, `names` tells which keys may be one, `points` combines them, and `lay` puts a point's
+//! `axis` reads one of them, `allowed_keys` tells which keys may be one, `points` combines them, and `apply` puts a point's
 //! values into an arm's config.
 
+mod allowed_keys;
+mod apply;
 mod axis;
-mod lay;
-mod names;
+pub(super) mod expand;
 mod points;
 
+pub(super) use apply::{has, lay};
 pub(super) use axis::Axis;
-pub(super) use lay::{has, lay};
 
-use super::error::ConfigError;
 use super::keys;
 use super::plan;
-use super::read::{Item, Section};
-use super::tree::{Node, Value};
 use super::worlds::Worlds;
-use names::Names;
+use crate::toml::document::{Node, Value};
+use crate::toml::error::ConfigError;
+use crate::toml::reader::{Item, Section};
+use allowed_keys::Names;
 
 /// Most points of a sweep.
 pub(super) const MOST: usize = 1 << 16;

@@ -2,10 +2,10 @@
 
 use super::MOST;
 use super::axis::{Axis, number, same};
-use crate::config::error::ConfigError;
-use crate::config::read::Item;
-use crate::config::tree::{Node, Origin};
 use crate::math::rng::{Purpose, Stream, draw};
+use crate::toml::document::{Node, Origin};
+use crate::toml::error::ConfigError;
+use crate::toml::reader::Item;
 use std::collections::BTreeSet;
 
 /// Draws after which no new point is expected any more, for each that is wanted.

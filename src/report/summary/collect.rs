@@ -1,9 +1,9 @@
 //! Sums the rows of the table of tests.
 
 use super::{Altered, Arm, Bound, Cell, Diverged, Score, Series, Skill, Summary, diverged as divergence};
-use crate::record::tables::{PLANNER, TRAINED};
-use crate::record::{EvaluationRow, Names};
 use crate::report::numbers::seeds as seed_count;
+use crate::run_folder::tables::{PLANNER, TRAINED};
+use crate::run_folder::{EvaluationRow, Names};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// One score per room, by seed.

@@ -2,7 +2,7 @@
 
 use super::collect::{Cells, Key, Seeds};
 use super::{Diverged, Score};
-use crate::record::Names;
+use crate::run_folder::Names;
 use std::collections::BTreeMap;
 
 /// Learners that the warning names.

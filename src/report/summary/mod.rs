@@ -6,7 +6,7 @@ mod diverged;
 pub use collect::summarise;
 
 use super::statistics::FEW_SEEDS;
-use crate::record::EvaluationRow;
+use crate::run_folder::EvaluationRow;
 use serde::Deserialize;
 
 /// Warnings that a reader will read; a sweep may have one per point.

@@ -4,7 +4,6 @@ use super::levels::{Level, levels};
 use super::plane::every;
 use super::surface::{CRITERION, Surface};
 use super::words;
-use crate::record::Sweep;
 use crate::report::axes::{self, lower_end, ticks, upper_end};
 use crate::report::canvas::{Anchor, Canvas, GREY, INK, PALE};
 use crate::report::curves::{COLORS, MOST_SMALL};
@@ -12,6 +11,7 @@ use crate::report::figures::{Drawing, Section, file_word};
 use crate::report::numbers::{limit, number, seeds};
 use crate::report::stairs::{self, Stair, Staircase};
 use crate::report::statistics::{BAND_RESAMPLES, Survival, TABLE_RESAMPLES, bootstrap, mean, quantile, sorted};
+use crate::run_folder::Sweep;
 use rayon::prelude::*;
 
 /// Limits of a performance profile.

@@ -2,9 +2,9 @@
 
 use super::surface::Surface;
 use super::words;
-use crate::record::Sweep;
-use crate::record::sweep::{AxisValue, Design};
 use crate::report::statistics::{Interval, Observation, TABLE_RESAMPLES, bootstrap, mean, paired_difference};
+use crate::run_folder::Sweep;
+use crate::run_folder::sweep::{AxisValue, Design};
 
 /// Values that are shown one by one; more, drawn at random, are put into classes.
 const MOST_VALUES: usize = 8;

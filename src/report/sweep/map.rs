@@ -4,11 +4,11 @@ use super::levels::Level;
 use super::plane::{self, Mark, Plane};
 use super::surface::Surface;
 use super::{levels, scatter, words};
-use crate::record::Sweep;
-use crate::record::sweep::Design;
 use crate::report::figures::{Drawing, Section, file_word};
 use crate::report::numbers::seeds;
 use crate::report::statistics::select;
+use crate::run_folder::Sweep;
+use crate::run_folder::sweep::Design;
 
 /// Pairs of axes that are drawn for an arm.
 const MOST_PAIRS: usize = 6;

@@ -21,7 +21,7 @@ pub use surface::{CRITERION, Point, Surface, surfaces};
 
 use super::figures::Drawing;
 use super::summary::{Diverged, Summary};
-use crate::record::Sweep;
+use crate::run_folder::Sweep;
 use rayon::prelude::*;
 
 /// Arms whose figures are drawn; tables hold all.

@@ -4,14 +4,14 @@ use super::levels::{Level, effect, levels};
 use super::replay::{Replay, replays};
 use super::surface::{CRITERION, Point, Surface};
 use super::{MOST_ARMS, Swept, words};
-use crate::record::Sweep;
-use crate::record::sweep::{Axis, Design, Scale};
 use crate::report::figures::{Drawing, Section};
 use crate::report::numbers::{limit, number, percent, seeds};
 use crate::report::rooms::low_quantile;
 use crate::report::statistics::{
     Interval, Survival, TABLE_RESAMPLES, bootstrap, interquartile_mean, mean, share_below, sorted,
 };
+use crate::run_folder::Sweep;
+use crate::run_folder::sweep::{Axis, Design, Scale};
 use minijinja::{Value, context};
 use rayon::prelude::*;
 use std::fmt::Write as _;

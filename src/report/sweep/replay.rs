@@ -114,7 +114,7 @@ fn learners(surface: &Surface, points: &[usize]) -> Vec<(u32, u32, (f64, f64))> 
 /// The command that trains one learner of a run again, into a folder beside the run's.
 fn command(folder: &Path, arm: &str, point: u32, seed: u32) -> String {
     let quoted = |text: String| shlex::try_quote(&text).map(|quoted| quoted.into_owned()).unwrap_or(text);
-    let config = quoted(folder.join(crate::record::folder::CONFIG).display().to_string());
+    let config = quoted(folder.join(crate::run_folder::folder::CONFIG).display().to_string());
     let beside = folder.file_name().map_or_else(|| "replay".to_owned(), |name| name.to_string_lossy().into_owned());
     let out = folder.with_file_name(format!("{beside}-{arm}-p{point}-{seed}"));
     let out = quoted(out.display().to_string());

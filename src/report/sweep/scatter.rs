@@ -3,11 +3,11 @@
 use super::plane::{BEST, BOTTOM, Colours, LEFT, Plane, RIGHT, TOP, frame};
 use super::surface::Surface;
 use super::{map, words};
-use crate::record::Sweep;
-use crate::record::sweep::{Axis, AxisValue, Scale};
 use crate::report::axes::ticks;
 use crate::report::canvas::{Anchor, Canvas, GREY, INK, PALE};
 use crate::report::numbers::number;
+use crate::run_folder::Sweep;
+use crate::run_folder::sweep::{Axis, AxisValue, Scale};
 
 /// Where the values of one axis lie.
 struct Span<'a> {

@@ -1,8 +1,8 @@
 //! One value per seed at every point of an arm.
 
-use crate::record::Sweep;
 use crate::report::statistics::{Observation, Selection, select};
 use crate::report::summary::{Diverged, Score, Series, Summary};
+use crate::run_folder::Sweep;
 
 /// Success of a seed's test that counts as having learned, in trials to criterion. The choice is ours: the paper names
 /// no limit.

@@ -1,10 +1,10 @@
 //! Values of axes, points and measured values in words.
 
 use super::surface::Surface;
-use crate::record::Sweep;
-use crate::record::sweep::AxisValue;
 use crate::report::numbers::{percent_with, points_with, with};
 use crate::report::statistics::Interval;
+use crate::run_folder::Sweep;
+use crate::run_folder::sweep::AxisValue;
 
 /// Characters up to which a number is written out.
 const LONGEST: usize = 7;

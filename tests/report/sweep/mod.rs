@@ -4,11 +4,11 @@ mod numbers;
 mod pages;
 
 use crate::OFFICE;
-use skilltree::record::sweep::{Axis, AxisValue, Design, FILE, Scale, write_sweep};
-use skilltree::record::tables::write_evaluations;
-use skilltree::record::{EvaluationRow, Names, Provenance, RunFolder, Sweep};
 use skilltree::report::summary::{Diverged, Summary, summarise};
 use skilltree::report::sweep::Swept;
+use skilltree::run_folder::sweep::{Axis, AxisValue, Design, FILE, Scale, write_sweep};
+use skilltree::run_folder::tables::write_evaluations;
+use skilltree::run_folder::{EvaluationRow, Names, Provenance, RunFolder, Sweep};
 use std::path::Path;
 
 pub(crate) const COLUMNS: u32 = 6;

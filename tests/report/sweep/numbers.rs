@@ -2,10 +2,10 @@
 
 use super::{ROWS, SEEDS, TESTS, known, peak, summary, swept, thresholds};
 use crate::close;
-use skilltree::record::EvaluationRow;
 use skilltree::report::statistics::Survival;
 use skilltree::report::summary::Diverged;
 use skilltree::report::sweep::{Surface, Swept, effect, levels, replays};
+use skilltree::run_folder::EvaluationRow;
 use std::collections::BTreeSet;
 use std::path::Path;
 

@@ -2,11 +2,11 @@
 
 use super::{ROWS, SEEDS, TESTS, axis, folder, grid, known, names, peak, rows, summary, thresholds};
 use crate::{OFFICE, close, scratch};
-use skilltree::record::sweep::{Axis, AxisValue, Design, FILE, Scale, write_sweep};
-use skilltree::record::tables::write_evaluations;
-use skilltree::record::{Provenance, RunFolder, Sweep};
 use skilltree::report::sweep::{Swept, effect, levels};
 use skilltree::report::{text, write};
+use skilltree::run_folder::sweep::{Axis, AxisValue, Design, FILE, Scale, write_sweep};
+use skilltree::run_folder::tables::write_evaluations;
+use skilltree::run_folder::{Provenance, RunFolder, Sweep};
 use std::fs;
 
 #[test]

@@ -1,0 +1,87 @@
+//! Other circumstances in which the roots that were learned are tested once more.
+
+use super::arms::small_name;
+use super::plan::{Alteration, Arm, Event, Noise};
+use super::skill::lacking;
+use super::worlds::{Ground, Worlds};
+use super::{keys, robot};
+use crate::toml::document::{Node, Origin};
+use crate::toml::error::ConfigError;
+use crate::toml::reader::Item;
+use crate::world::World;
+
+/// Reads the table `alter`. Every arm's root must be able to do its test in each of its worlds.
+pub(super) fn read<'a>(
+    altered: &Node,
+    base: &Node,
+    arms: impl Iterator<Item = &'a Arm> + Clone,
+    worlds: &mut Worlds<'_>,
+) -> Result<Vec<Alteration>, ConfigError> {
+    let mut alterations = Vec::new();
+    for (entry, item) in (Item { name: "alter".to_owned(), node: altered }).table()?.all() {
+        small_name(entry, "an alteration")?;
+        let table = item.table()?;
+        let (world, noise) = (table.optional(keys::ALTER_WORLD.name()), table.optional(keys::ALTER_NOISE.name()));
+        table.finish()?;
+        let place = match (&world, &noise) {
+            (Some(world), _) => world.origin(),
+            (None, Some(_)) => &entry.origin,
+            (None, None) => {
+                let message = format!("`{}` alters nothing", item.name);
+                return Err(entry.origin.error(message, "add world = \"worlds/...\", noise = { ... }, or both"));
+            }
+        };
+        let noise = noise.map(|noise| laid_over(&noise, base)).transpose()?;
+        let world = world.map(|world| worlds.place(&world)).transpose()?;
+        let placed = |world: usize| &worlds.placed[world].world;
+        for arm in arms.clone() {
+            let own = world.unwrap_or(arm.world);
+            check_rooms(placed(own), placed(arm.world), place)?;
+            check_root(worlds.ground(own), arm, place)?;
+        }
+        alterations.push(Alteration { name: entry.key.clone(), world, noise });
+    }
+    Ok(alterations)
+}
+
+fn laid_over(item: &Item<'_>, base: &Node) -> Result<Noise, ConfigError> {
+    item.table()?;
+    let noise = base.get("robot").and_then(|robot| robot.get("noise"));
+    let mut merged = noise.cloned().unwrap_or_else(|| Node::empty(item.origin().clone()));
+    merged.merge(item.node.clone());
+    robot::noise(&Item { name: item.name.clone(), node: &merged })
+}
+
+/// Refuses a world with other rooms than `usual`: what was learned there, and the results, tell rooms by their order.
+fn check_rooms(world: &World, usual: &World, place: &Origin) -> Result<(), ConfigError> {
+    let names = |world: &World| world.rooms.iter().map(|room| room.name.clone()).collect::<Vec<_>>();
+    let (found, wanted) = (names(world), names(usual));
+    if found == wanted {
+        return Ok(());
+    }
+    let message =
+        format!("the world `{}` has the rooms {}, not those of `{}`", world.name, found.join(", "), usual.name);
+    Err(place.error(message, format!("an altered world has the same rooms in the same order: {}", wanted.join(", "))))
+}
+
+/// Refuses a world in which a root's tests cannot start, or never end as achieved.
+fn check_root(ground: Ground<'_>, arm: &Arm, place: &Origin) -> Result<(), ConfigError> {
+    let Some(root) = arm.skills.last() else { return Ok(()) };
+    let world = ground.world;
+    let problem = match ground.region_is_empty(&root.tests) {
+        None => Some(format!("the world `{}` has no region `{}`", world.name, root.tests)),
+        Some(true) => Some(format!("in the world `{}` the robot fits nowhere in `{}`", world.name, root.tests)),
+        Some(false) => None,
+    };
+    if let Some(problem) = problem {
+        let hint = "give the altered world this region, or test in another one";
+        return Err(place.error(format!("{problem}, where tests of `{}` start", root.name), hint));
+    }
+    for event in Event::ALL.into_iter().filter(|event| root.ends & event.bit() != 0) {
+        if let Some(lacking) = lacking(event, world) {
+            let message = format!("`{}` cannot happen: the world `{}` has no {lacking}", event.name(), world.name);
+            return Err(place.error(message, format!("add {lacking} to it: tests of `{}` end with this", root.name)));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,7 @@
+//! The kernels: what a device is asked to execute.
+//!
+//! Twins: `shaders/kernels/`.
+
+pub mod evaluate;
+pub mod step;
+pub mod train;

@@ -1,0 +1,134 @@
+//! `manifest.json`: what made a run folder, and the length and hash of every file in it.
+
+use super::file_system::Disk;
+use super::{FORMAT, RecordError};
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::io;
+use std::path::Path;
+
+/// Who made the results, where and when.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Provenance {
+    /// Version of skilltree.
+    pub version: String,
+    /// Git commit of skilltree, if known.
+    pub commit: Option<String>,
+    /// `cpu` or `gpu`.
+    pub backend: String,
+    /// The GPU's name, if one was used.
+    pub adapter: Option<String>,
+    /// Seeds that were run, ascending.
+    pub seeds: Vec<u32>,
+    /// When the run began, RFC 3339 in UTC. Differs from run to run, as `finished` does; result files hold no time.
+    pub started: Option<String>,
+    /// When the run ended, RFC 3339 in UTC.
+    pub finished: Option<String>,
+    /// Anything else worth keeping (threads, wall time), shown in the report as it stands.
+    #[serde(default)]
+    pub notes: BTreeMap<String, String>,
+}
+
+/// Length and hash of one result file.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FileDigest {
+    /// Length in bytes.
+    pub bytes: u64,
+    /// SHA-256 in lower-case hexadecimal.
+    pub sha256: String,
+}
+
+/// The content of `manifest.json`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// Layout of the folder: [`FORMAT`].
+    pub format: u32,
+    /// What made the results.
+    #[serde(flatten)]
+    pub provenance: Provenance,
+    /// Every result file by its path in the folder, with `/` between parts.
+    pub files: BTreeMap<String, FileDigest>,
+}
+
+impl Manifest {
+    /// The file's name.
+    pub const NAME: &'static str = "manifest.json";
+
+    /// JSON text, ending with a line feed.
+    ///
+    /// # Errors
+    /// [`RecordError::Invalid`] if a value has no JSON form.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, RecordError> {
+        let text =
+            serde_json::to_string_pretty(self).map_err(|error| RecordError::invalid(Self::NAME, error.to_string()))?;
+        Ok((text + "\n").into_bytes())
+    }
+
+    /// Reads a manifest; `path` is only for messages.
+    ///
+    /// # Errors
+    /// [`RecordError::Format`] for another layout, [`RecordError::Damaged`] for anything that is not a manifest.
+    pub fn parse(bytes: &[u8], path: &Path) -> Result<Self, RecordError> {
+        // The format comes first: another version may well have other keys.
+        #[derive(Deserialize)]
+        struct Version {
+            format: serde_json::Value,
+        }
+        let damaged = |error: serde_json::Error| RecordError::damaged(path, error.to_string());
+        let version: Version = serde_json::from_slice(bytes).map_err(damaged)?;
+        if version.format != serde_json::json!(FORMAT) {
+            let found = version.format.to_string();
+            return Err(RecordError::Format { path: path.into(), found, known: FORMAT });
+        }
+        let manifest: Self = serde_json::from_slice(bytes).map_err(damaged)?;
+        match manifest.files.keys().find(|name| !is_plain(name)) {
+            Some(name) => Err(RecordError::damaged(path, format!("lists `{name}`, which lies outside the folder"))),
+            None => Ok(manifest),
+        }
+    }
+}
+
+/// Whether a path stays in its folder: words of ordinary characters with `/` between, none starting with a dot.
+pub(crate) fn is_plain(path: &str) -> bool {
+    path.split('/').all(|word| {
+        !word.is_empty()
+            && !word.starts_with('.')
+            && word.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '_' | '+' | '='))
+    })
+}
+
+impl FileDigest {
+    /// Digest of bytes in memory.
+    pub fn of(bytes: &[u8]) -> Self {
+        Self { bytes: bytes.len() as u64, sha256: hexadecimal(&Sha256::digest(bytes)) }
+    }
+
+    /// Digest of a file, without holding it in memory.
+    ///
+    /// # Errors
+    /// Whatever reading the file gives.
+    pub fn of_file(disk: &dyn Disk, path: &Path) -> io::Result<Self> {
+        let (mut file, mut hasher) = (disk.open(path)?, Sha256::new());
+        let (mut buffer, mut bytes) = (vec![0; 1 << 16], 0);
+        loop {
+            let read = match file.read(&mut buffer) {
+                Ok(0) => return Ok(Self { bytes, sha256: hexadecimal(&hasher.finalize()) }),
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+                other => other?,
+            };
+            hasher.update(&buffer[..read]);
+            bytes += read as u64;
+        }
+    }
+}
+
+/// Bytes as lower-case hexadecimal digits.
+pub(super) fn hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().fold(String::with_capacity(2 * bytes.len()), |mut text, byte| {
+        // Writing to a String cannot fail.
+        let _ = write!(text, "{byte:02x}");
+        text
+    })
+}

@@ -1,0 +1,9 @@
+//! TOML with the place of every value: what config files and floor plans are read with.
+
+pub(crate) mod document;
+pub mod error;
+pub(crate) mod printer;
+pub(crate) mod reader;
+pub mod schema;
+
+pub use error::{ConfigError, Place};

@@ -1,0 +1,309 @@
+//! Takes typed values out of a [`Node`] tree and refuses what nobody asked for.
+
+use super::document::{Entry, Node, Origin, Value};
+use super::error::{ConfigError, list, nearest, suggest};
+use super::schema::{Allowed, Bounds, Key};
+use std::cell::RefCell;
+
+/// Whether the text is a short name of letters, digits, `-` and `_`; such names need no quotes in TOML.
+pub(crate) fn is_name(text: &str) -> bool {
+    !text.is_empty() && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '_')
+}
+
+/// The text in brackets after a name, as in `sonar(60)`.
+pub(crate) fn argument<'a>(text: &'a str, name: &str) -> Option<&'a str> {
+    text.strip_prefix(name)?.strip_prefix('(')?.strip_suffix(')').map(str::trim)
+}
+
+/// A value with its dotted name, for messages.
+#[derive(Debug, Clone)]
+pub(crate) struct Item<'a> {
+    pub(crate) name: String,
+    pub(crate) node: &'a Node,
+}
+
+impl<'a> Item<'a> {
+    /// The document as a value.
+    pub(crate) fn root(node: &'a Node) -> Self {
+        Self { name: String::new(), node }
+    }
+
+    /// Where it was written.
+    pub(crate) fn origin(&self) -> &'a Origin {
+        &self.node.origin
+    }
+
+    /// A complaint about this value.
+    pub(crate) fn error(&self, message: impl Into<String>, hint: impl Into<String>) -> ConfigError {
+        self.origin().error(message, hint)
+    }
+
+    fn wrong(&self, expected: &str, hint: &str) -> ConfigError {
+        self.error(format!("`{}` must be {expected}, not {}", self.name, self.node.kind()), hint)
+    }
+
+    /// A number within bounds, as written.
+    pub(crate) fn double(&self, bounds: Bounds) -> Result<f64, ConfigError> {
+        let value = match self.node.value {
+            Value::Float(value) => value,
+            Value::Integer(value) => value as f64,
+            _ => return Err(self.wrong("a number", &format!("use a number {bounds}"))),
+        };
+        if !bounds.holds(value) {
+            // Plain notation would fill the line with zeros.
+            let long = value != 0.0 && !(1e-4..1e15).contains(&value.abs());
+            let shown = if long { format!("{value:e}") } else { value.to_string() };
+            let message = format!("`{}` is {shown}, which is out of range", self.name);
+            return Err(self.error(message, format!("use a number {bounds}")));
+        }
+        Ok(value)
+    }
+
+    /// A number within bounds.
+    pub(crate) fn number(&self, bounds: Bounds) -> Result<f32, ConfigError> {
+        self.double(bounds).map(|value| value as f32)
+    }
+
+    /// A whole number within bounds, both allowed.
+    pub(crate) fn whole(&self, low: u32, high: u32) -> Result<u32, ConfigError> {
+        let hint = format!("use a whole number between {low} and {high}");
+        match self.node.value {
+            Value::Integer(value) => match u32::try_from(value) {
+                Ok(value) if (low..=high).contains(&value) => Ok(value),
+                _ => Err(self.error(format!("`{}` is {value}, which is out of range", self.name), hint)),
+            },
+            _ => Err(self.wrong("a whole number", &hint)),
+        }
+    }
+
+    /// True or false.
+    pub(crate) fn flag(&self) -> Result<bool, ConfigError> {
+        match self.node.value {
+            Value::Flag(flag) => Ok(flag),
+            _ => Err(self.wrong("true or false", "write true or false, without quotes")),
+        }
+    }
+
+    /// Text.
+    pub(crate) fn text(&self) -> Result<&'a str, ConfigError> {
+        match &self.node.value {
+            Value::Text(text) => Ok(text),
+            _ => Err(self.wrong("a string", "put text in quotes")),
+        }
+    }
+
+    /// A short name of letters, digits, `-` and `_`.
+    pub(crate) fn short_name(&self) -> Result<&'a str, ConfigError> {
+        let text = self.text()?;
+        if !is_name(text) {
+            return Err(self.error(format!("`{text}` cannot be a name"), "use letters, digits, `-` and `_` only"));
+        }
+        Ok(text)
+    }
+
+    /// One of the given names; returns its index.
+    pub(crate) fn choice(&self, what: &str, allowed: &[&str]) -> Result<usize, ConfigError> {
+        let text = self.text()?;
+        allowed
+            .iter()
+            .position(|name| *name == text)
+            .ok_or_else(|| self.error(format!("`{text}` is not one of the {what}"), suggest(text, what, allowed)))
+    }
+
+    /// The items of a list.
+    pub(crate) fn items(&self) -> Result<Vec<Item<'a>>, ConfigError> {
+        match &self.node.value {
+            Value::List(items) => {
+                let item = |(i, node)| Item { name: format!("{}[{i}]", self.name), node };
+                Ok(items.iter().enumerate().map(item).collect())
+            }
+            _ => Err(self.wrong("a list", "write it as [ ..., ... ]")),
+        }
+    }
+
+    /// A list that is not empty, not too long, and in which nothing is twice.
+    pub(crate) fn distinct<T: PartialEq>(
+        &self,
+        most: usize,
+        read: impl Fn(&Item<'a>) -> Result<T, ConfigError>,
+    ) -> Result<Vec<T>, ConfigError> {
+        let mut out = Vec::new();
+        for one in self.items()? {
+            let value = read(&one)?;
+            if out.contains(&value) {
+                return Err(one.error(format!("`{}` is there twice", one.text()?), "name each once"));
+            }
+            out.push(value);
+        }
+        if out.is_empty() {
+            return Err(self.error(format!("`{}` is empty", self.name), "name at least one"));
+        }
+        if out.len() > most {
+            let message = format!("`{}` has {} entries", self.name, out.len());
+            return Err(self.error(message, format!("at most {most} fit")));
+        }
+        Ok(out)
+    }
+
+    /// A list of whole numbers up to `high`, each more than the one before.
+    pub(crate) fn ascending(&self, high: u32) -> Result<Vec<u32>, ConfigError> {
+        let mut out = Vec::new();
+        for item in self.items()? {
+            let number = item.whole(0, high)?;
+            if out.last().is_some_and(|&last| last >= number) {
+                let message = format!("`{}` does not rise", item.name);
+                return Err(item.error(message, "write each number once, in ascending order"));
+            }
+            out.push(number);
+        }
+        Ok(out)
+    }
+
+    /// A list of exactly N numbers of any reasonable size; `shape` shows them, for the hint.
+    pub(crate) fn numbers<const N: usize>(&self, shape: &str) -> Result<[f32; N], ConfigError> {
+        self.numbers_within(shape, Bounds::between(-1e6, 1e6))
+    }
+
+    /// A list of exactly N numbers within bounds.
+    pub(crate) fn numbers_within<const N: usize>(&self, shape: &str, bounds: Bounds) -> Result<[f32; N], ConfigError> {
+        let hint = format!("write {shape}");
+        let Value::List(_) = &self.node.value else { return Err(self.wrong(&format!("a list of {N} numbers"), &hint)) };
+        let items = self.items()?;
+        if items.len() != N {
+            return Err(self.error(format!("`{}` must have {N} numbers, not {}", self.name, items.len()), hint));
+        }
+        let mut out = [0.0; N];
+        for (to, item) in out.iter_mut().zip(&items) {
+            *to = item.number(bounds)?;
+        }
+        Ok(out)
+    }
+
+    /// The table; every key that is not asked for before [`Table::finish`] is refused there.
+    pub(crate) fn table(&self) -> Result<Table<'a>, ConfigError> {
+        match &self.node.value {
+            Value::Table(entries) => {
+                Ok(Table { name: self.name.clone(), node: self.node, entries, asked: RefCell::new(Vec::new()) })
+            }
+            _ => Err(self.wrong("a table", "write its keys below a [header], or as { key = value }")),
+        }
+    }
+}
+
+/// A table that keeps track of the keys that were asked for.
+#[derive(Debug)]
+pub(crate) struct Table<'a> {
+    name: String,
+    node: &'a Node,
+    entries: &'a [Entry],
+    asked: RefCell<Vec<String>>,
+}
+
+impl<'a> Table<'a> {
+    /// The full dotted name of a key.
+    pub(crate) fn name_of(&self, key: &str) -> String {
+        if self.name.is_empty() { key.to_owned() } else { format!("{}.{key}", self.name) }
+    }
+
+    /// The value under a key that may be missing.
+    pub(crate) fn optional(&self, key: &str) -> Option<Item<'a>> {
+        self.asked.borrow_mut().push(key.to_owned());
+        self.node.get(key).map(|node| Item { name: self.name_of(key), node })
+    }
+
+    /// The value under a key that must be there; `example` shows one.
+    pub(crate) fn required(&self, key: &str, example: &str) -> Result<Item<'a>, ConfigError> {
+        self.optional(key).ok_or_else(|| {
+            // A misspelt key explains a missing one better.
+            let stranger = self.entries.iter().find(|e| nearest(&e.key, &[key]).is_some());
+            let hint = match stranger {
+                Some(entry) => format!("`{}` was found; did you mean `{key}`?", entry.key),
+                None => format!("add `{key} = {example}`"),
+            };
+            self.missing(key, hint)
+        })
+    }
+
+    fn missing(&self, key: &str, hint: String) -> ConfigError {
+        let message = format!("`{}` is missing", self.name_of(key));
+        // The document has no line of its own.
+        if self.name.is_empty() {
+            self.node.origin.file_error(message, hint)
+        } else {
+            self.node.origin.error(message, hint)
+        }
+    }
+
+    /// All keys with their values, all counted as asked for.
+    pub(crate) fn all(&self) -> Vec<(&'a Entry, Item<'a>)> {
+        let mut asked = self.asked.borrow_mut();
+        let each = self.entries.iter().map(|entry| {
+            asked.push(entry.key.clone());
+            (entry, Item { name: self.name_of(&entry.key), node: &entry.node })
+        });
+        each.collect()
+    }
+
+    /// Refuses keys that were never asked for.
+    pub(crate) fn finish(self) -> Result<(), ConfigError> {
+        let asked = self.asked.borrow();
+        let Some(entry) = self.entries.iter().find(|entry| !asked.contains(&entry.key)) else { return Ok(()) };
+        let place = if self.name.is_empty() { "here".to_owned() } else { format!("in `{}`", self.name) };
+        let asked: Vec<&str> = asked.iter().map(String::as_str).collect();
+        let hint = match nearest(&entry.key, &asked) {
+            Some(best) => format!("did you mean `{best}`?"),
+            None => format!("the keys {place} are {}", list(&asked)),
+        };
+        Err(entry.origin.error(format!("unknown key `{}`", self.name_of(&entry.key)), hint))
+    }
+}
+
+/// A table whose keys are in [`super::keys`], which holds their ranges. Defaults are in the tree already.
+#[derive(Debug)]
+pub(crate) struct Section<'a>(pub(crate) Table<'a>);
+
+impl<'a> Section<'a> {
+    /// The value of a key that must be there.
+    pub(crate) fn required(&self, key: &Key, example: &str) -> Result<Item<'a>, ConfigError> {
+        self.0.required(key.name(), example)
+    }
+
+    fn get(&self, key: &Key) -> Result<Item<'a>, ConfigError> {
+        self.required(key, key.default.unwrap_or("..."))
+    }
+
+    /// A number in the key's range.
+    pub(crate) fn number(&self, key: &Key) -> Result<f32, ConfigError> {
+        self.get(key)?.number(bounds(key))
+    }
+
+    /// A whole number in the key's range.
+    pub(crate) fn whole(&self, key: &Key) -> Result<u32, ConfigError> {
+        let (low, high) = match key.allowed {
+            Allowed::Whole(low, high) => (low, high),
+            _ => (0, u32::MAX),
+        };
+        self.get(key)?.whole(low, high)
+    }
+
+    /// True or false.
+    pub(crate) fn flag(&self, key: &Key) -> Result<bool, ConfigError> {
+        self.get(key)?.flag()
+    }
+
+    /// The index of one of the key's words.
+    pub(crate) fn choice(&self, key: &Key) -> Result<usize, ConfigError> {
+        let words = match key.allowed {
+            Allowed::Choice(words) => words,
+            _ => &[],
+        };
+        self.get(key)?.choice("possible values", words)
+    }
+}
+
+fn bounds(key: &Key) -> Bounds {
+    match key.allowed {
+        Allowed::Number(bounds) => bounds,
+        _ => Bounds::between(-1e6, 1e6),
+    }
+}

@@ -1,0 +1,310 @@
+//! From a plan to the memory of a cohort: every derived size is computed here, once.
+
+use crate::config::plan::{Arm, Child, Input, NoiseKind, Optimiser, Skill, Threshold};
+use crate::layout::{
+    BASE_WORDS, EVENTS, HyperParams, LANES, LESSON_HEADER, LearnerState, MAX_CHILDREN, MAX_GROUPS, MAX_INPUTS,
+    MAX_ROWS, MAX_SKILLS, MAX_STARTS, RECORD_WORDS, ROW_WORDS, SKILL_CODE, SONAR_CODES, SkillShape,
+};
+use crate::policy::features::{
+    GROUP_APPLICABLE, GROUP_BUMPERS, GROUP_COMPASS, GROUP_COMPASS2, GROUP_DOOR_TRACE, GROUP_LIGHT, GROUP_LIGHT_TRACE,
+    GROUP_LIT, GROUP_RANGE_MEANS, GROUP_ROOM, GROUP_RUNNING, GROUP_SONAR, GROUP_SONAR_COMPASS, GROUP_VALUES,
+};
+use crate::policy::persistence::ALWAYS;
+use crate::qnet::backward::{OPTIMISER_ADAM, OPTIMISER_ADAM_ROWS, OPTIMISER_SGD};
+use crate::qnet::forward::net_of;
+use crate::qnet::init::init;
+use crate::world::World;
+use crate::world::tables::Tables;
+use bytemuck::Zeroable;
+
+/// Sizes and shared words of the learners of some arms that agree in everything but numbers.
+#[derive(Debug, Clone)]
+pub struct Shape {
+    /// One per skill; the bank's offsets are still to be filled in.
+    pub skills: Vec<SkillShape>,
+    /// Segment lists, region cells and sonar tables.
+    pub tables: Tables,
+    /// Words of one learner's nets.
+    pub nets_stride: usize,
+    /// Words of one learner's lessons.
+    pub lessons_stride: usize,
+    /// Words of one learner's rows.
+    pub rows_stride: usize,
+}
+
+/// Why a plan cannot be laid out: a limit of the layout or a region without free space.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("skill `{skill}`: {message}\nhint: {hint}")]
+pub struct ShapeError {
+    /// The skill's name.
+    pub skill: String,
+    /// What does not fit.
+    pub message: String,
+    /// What the user can do.
+    pub hint: String,
+}
+
+impl Shape {
+    /// Lays out the memory of `arms`, which must have equal skills but for their numbers.
+    ///
+    /// # Errors
+    /// Where a skill exceeds a limit of the layout, or starts in a region without free space.
+    pub fn new(world: &World, arms: &[&Arm]) -> Result<Self, ShapeError> {
+        let mut shape =
+            Self { skills: Vec::new(), tables: Tables::new(world), nets_stride: 0, lessons_stride: 0, rows_stride: 0 };
+        for (number, skill) in arms[0].skills.iter().enumerate() {
+            let siblings = || arms.iter().map(|arm| &arm.skills[number]);
+            let most = |size: fn(&Skill) -> u32| siblings().map(size).max().unwrap_or(0);
+            let mut plan = plan_of(skill, world, &mut shape.tables)?;
+            plan.watched = watched(&arms[0].skills, number);
+            plan.lesson_stride = lesson_stride(most(|skill| skill.max_steps), plan.record_words);
+            plan.memory_offset = shape.lessons_stride as u32;
+            match skill.mirror {
+                Some(source) => {
+                    plan.nets_offset = shape.skills[source].nets_offset;
+                    plan.clock_offset = shape.skills[source].clock_offset;
+                }
+                None => {
+                    plan.nets_offset = shape.nets_stride as u32;
+                    plan.clock_offset = net_of(&plan, 0, plan.nets);
+                    shape.nets_stride = plan.clock_offset as usize + LANES;
+                }
+            }
+            // What is never tried is never remembered.
+            if most(|skill| skill.trials) > 0 {
+                shape.lessons_stride += most(|skill| skill.learning.memory) as usize * plan.lesson_stride as usize;
+            }
+            shape.rows_stride += most(|skill| skill.trials + skill.lessons) as usize * ROW_WORDS;
+            shape.skills.push(plan);
+        }
+        // Every net can be read as one of `MAX_ROWS` rows: the last one too.
+        let ends = shape.skills.iter().map(|plan| net_of(plan, 0, plan.nets.max(1) - 1) as usize + MAX_ROWS * LANES);
+        shape.nets_stride = ends.fold(shape.nets_stride, usize::max);
+        // No buffer may be empty, even where nothing is trained.
+        shape.lessons_stride = shape.lessons_stride.max(1);
+        shape.rows_stride = shape.rows_stride.max(ROW_WORDS);
+        Ok(shape)
+    }
+
+    /// Bytes of memory that one learner takes.
+    pub fn bytes_per_learner(&self) -> usize {
+        let words = self.nets_stride + self.lessons_stride + self.rows_stride;
+        words * 4 + size_of::<LearnerState>() + self.skills.len() * size_of::<HyperParams>()
+    }
+
+    /// A learner's params for each skill, its state before the first iteration, and its initial nets.
+    pub fn learner(&self, arm: &Arm, run_seed: u32, seed: u32) -> (Vec<HyperParams>, LearnerState, Vec<f32>) {
+        let mut nets = vec![0.0; self.nets_stride];
+        let params: Vec<HyperParams> = arm.skills.iter().map(|skill| params_of(skill, arm, run_seed, seed)).collect();
+        for (number, plan) in self.skills.iter().enumerate().filter(|(number, _)| arm.skills[*number].mirror.is_none())
+        {
+            init(&mut nets, plan, number as u32, &params[number]);
+        }
+        (params, LearnerState::zeroed(), nets)
+    }
+}
+
+/// Words of a lesson of at most `max_steps` steps of `record_words` each.
+pub fn lesson_stride(max_steps: u32, record_words: u32) -> u32 {
+    LESSON_HEADER as u32 + (max_steps + 1) * record_words
+}
+
+/// Bits of the skills below `root`, at any depth, on whose values some threshold in its tree depends.
+fn watched(skills: &[Skill], root: usize) -> u32 {
+    let mut below = 1_u32 << root;
+    let mut watched = 0;
+    for (n, skill) in skills.iter().enumerate().rev().filter(|(n, _)| *n <= root && *n < MAX_SKILLS) {
+        if (below >> n) & 1 == 0 {
+            continue;
+        }
+        for (child, threshold) in skill.children.iter().zip(&skill.applicable) {
+            let Child::Skill(child) = child else { continue };
+            below |= 1 << child;
+            watched |= u32::from(threshold.is_some()) << child;
+        }
+    }
+    watched
+}
+
+fn plan_of(skill: &Skill, world: &World, tables: &mut Tables) -> Result<SkillShape, ShapeError> {
+    let refuse = |message: String, hint: &str| ShapeError { skill: skill.name.clone(), message, hint: hint.to_owned() };
+    let rooms = world.rooms.len();
+    let inputs = skill.width(rooms);
+    if inputs as usize > MAX_INPUTS || skill.inputs.len() > MAX_GROUPS {
+        let message = format!("{inputs} inputs in {} groups; {MAX_INPUTS} in {MAX_GROUPS} fit", skill.inputs.len());
+        return Err(refuse(message, "name fewer inputs"));
+    }
+    if skill.children.len() > MAX_CHILDREN || skill.starts.len() > MAX_STARTS {
+        let message = format!("at most {MAX_CHILDREN} children and {MAX_STARTS} start regions fit");
+        return Err(refuse(message, "name fewer of them"));
+    }
+    let mut plan = SkillShape::zeroed();
+    plan.inputs = inputs;
+    plan.children = skill.children.len() as u32;
+    (plan.nets, plan.outputs) = if skill.learning.shared_net { (1, plan.children) } else { (plan.children, 1) };
+    plan.rows = inputs + plan.outputs + 2;
+    plan.record_words = if skill.is_high() || recalls(skill) { RECORD_WORDS } else { BASE_WORDS } as u32;
+    plan.mirrored = u32::from(skill.mirror.is_some());
+    plan.groups = skill.inputs.len() as u32;
+    plan.starts = skill.starts.len() as u32;
+    plan.ends = skill.ends;
+    let (mut first, mut bits) = (0, 0_u64);
+    for (group, input) in skill.inputs.iter().enumerate() {
+        plan.group_first[group] = first;
+        plan.group_width[group] = input.width(skill, rooms);
+        if matches!(input, Input::Light | Input::Bumpers) {
+            bits |= ((1 << plan.group_width[group]) - 1) << first;
+        }
+        first += plan.group_width[group];
+        plan.group_kind[group] = match input {
+            Input::Sonar { .. } | Input::SonarFar => GROUP_SONAR,
+            Input::SonarCompass { .. } => GROUP_SONAR_COMPASS,
+            Input::Light => GROUP_LIGHT,
+            Input::Bumpers => GROUP_BUMPERS,
+            Input::Compass => GROUP_COMPASS,
+            Input::Compass2 => GROUP_COMPASS2,
+            Input::Lit => GROUP_LIT,
+            Input::Values => GROUP_VALUES,
+            Input::Applicable => GROUP_APPLICABLE,
+            Input::Running => GROUP_RUNNING,
+            Input::LightTrace => GROUP_LIGHT_TRACE,
+            Input::DoorTrace => GROUP_DOOR_TRACE,
+            Input::RangeMeans => GROUP_RANGE_MEANS,
+            Input::Room => GROUP_ROOM,
+        };
+        if plan.group_kind[group] == GROUP_SONAR || plan.group_kind[group] == GROUP_SONAR_COMPASS {
+            plan.group_table[group] = tables.add_table(&sonar_table(*input));
+        }
+    }
+    plan.bits_low = bits as u32;
+    plan.bits_high = (bits >> 32) as u32;
+    for (number, (child, threshold)) in skill.children.iter().zip(&skill.applicable).enumerate() {
+        plan.child[number] = match child {
+            Child::Action(action) => *action as u32,
+            Child::Skill(below) => (SKILL_CODE + below) as u32,
+        };
+        let image = skill.children.iter().position(|other| *other == child.mirrored());
+        plan.mirror_child[number] = image.unwrap_or(number) as u32;
+        plan.thresholded |= u32::from(threshold.is_some()) << number;
+    }
+    let mut cells_of = |region: &str| {
+        let cells = world.region_cells(region).unwrap_or_default();
+        if cells.is_empty() {
+            let message = format!("region `{region}` of world `{}` has no place for a robot", world.name);
+            return Err(refuse(message, "name another region, or make room in the world"));
+        }
+        Ok(tables.add_cells(&cells))
+    };
+    let mut share = 0.0;
+    for (number, (region, part)) in skill.starts.iter().enumerate() {
+        share += part;
+        plan.start_share[number] = share;
+        (plan.start_offset[number], plan.start_count[number]) = cells_of(region)?;
+    }
+    (plan.tests_offset, plan.tests_count) = cells_of(&skill.tests)?;
+    Ok(plan)
+}
+
+/// Whether a skill's inputs stand in the second part of a record.
+fn recalls(skill: &Skill) -> bool {
+    let memory = |input: &Input| {
+        matches!(input, Input::Running | Input::LightTrace | Input::DoorTrace | Input::RangeMeans | Input::Room)
+    };
+    skill.inputs.iter().any(memory)
+}
+
+/// What a net is given for each sonar reading, 0 to 127 inches.
+fn sonar_table(input: Input) -> [f32; SONAR_CODES] {
+    std::array::from_fn(|reading| {
+        let d = reading as f64;
+        let code = match input {
+            Input::Sonar { scale } | Input::SonarCompass { scale } => {
+                2.0 * (-(d - 12.0) / f64::from(scale)).exp() - 1.0
+            }
+            _ => 2.0 * d / 127.0 - 1.0,
+        };
+        code as f32
+    })
+}
+
+fn params_of(skill: &Skill, arm: &Arm, run_seed: u32, seed: u32) -> HyperParams {
+    let (learning, noise, robot) = (&skill.learning, &arm.noise, &arm.robot);
+    let persistence = &skill.persistence;
+    let mut threshold = [ALWAYS; MAX_CHILDREN];
+    for (value, own) in threshold.iter_mut().zip(&skill.applicable) {
+        // A learned one is always exceeded until it is known.
+        if let Some(Threshold::Fixed(fixed)) = own {
+            *value = *fixed;
+        }
+    }
+    let (optimiser, rate, beta1, beta2, epsilon) = match learning.optimiser {
+        Optimiser::Sgd { rate, momentum } => (OPTIMISER_SGD, rate, momentum, 0.0, 1.0),
+        Optimiser::Adam { rows: false, rate, beta1, beta2, epsilon } => (OPTIMISER_ADAM, rate, beta1, beta2, epsilon),
+        Optimiser::Adam { rows: true, rate, beta1, beta2, epsilon } => {
+            (OPTIMISER_ADAM_ROWS, rate, beta1, beta2, epsilon)
+        }
+    };
+    let rise = learning.inverse_temperature_end - learning.inverse_temperature_start;
+    let mut reward = [0.0; EVENTS];
+    reward.copy_from_slice(&skill.reward);
+    HyperParams {
+        run_seed,
+        learner_seed: seed,
+        noise_kind: match noise.kind {
+            NoiseKind::Gaussian => 0,
+            NoiseKind::Uniform => 1,
+        },
+        noise_actuator: noise.actuator,
+        noise_sonar: noise.sonar,
+        noise_light: noise.light,
+        noise_compass: noise.compass,
+        hidden: learning.hidden,
+        unit_share: 1.0 / learning.hidden as f32,
+        init: learning.init,
+        gamma: learning.gamma,
+        lambda: learning.lambda,
+        optimiser,
+        rate,
+        rate_fall: (1.0 - learning.rate_end_share) / learning.rate_trials as f32,
+        rate_trials: learning.rate_trials,
+        beta1,
+        beta2,
+        epsilon2: epsilon * epsilon,
+        value_scale: 1.0 / learning.reward_scale,
+        target_limit: learning.target_limit,
+        inverse_temperature_start: learning.inverse_temperature_start,
+        inverse_temperature_slope: rise / learning.inverse_temperature_trials.max(1) as f32,
+        inverse_temperature_trials: learning.inverse_temperature_trials,
+        policy_threshold: learning.policy_threshold,
+        replays: learning.replays,
+        memory: learning.memory,
+        mean_age: learning.mean_age,
+        age_decay: -1.0 / learning.mean_age,
+        taught_passes: learning.taught_passes,
+        taught_replays: learning.taught_replays,
+        taught_always: u32::from(learning.taught_always),
+        timeout_terminal: u32::from(learning.timeout_terminal),
+        mask_blocked: u32::from(learning.mask_blocked),
+        mirror_replays: u32::from(learning.mirror_replays),
+        lessons: skill.lessons,
+        trials: skill.trials,
+        max_steps: skill.max_steps,
+        choice: skill.choice as u32,
+        persist_training: u32::from(persistence.training),
+        persist_tests: u32::from(persistence.tests),
+        applicability: u32::from(persistence.applicability),
+        interrupt: u32::from(persistence.interrupt),
+        decision_steps: persistence.decision_steps,
+        child_inverse_temperature: learning.child_inverse_temperature,
+        backup: learning.backup as u32,
+        advantage_scale: learning.advantage_scale,
+        inner_share: learning.inner_share,
+        light_trace: robot.light_trace,
+        door_trace: robot.door_trace,
+        range_mean: robot.range_mean,
+        beside_near: robot.beside_near as u32,
+        beside_far: robot.beside_far as u32,
+        threshold,
+        reward,
+    }
+}

@@ -1,0 +1,94 @@
+//! A record's first words as a person reads them.
+
+use crate::backend::{Backend, BackendError};
+use crate::config::plan::{Noise, NoiseKind};
+use crate::env::motion::NO_ACTION;
+use crate::env::segments::SegmentGrid;
+use crate::env::workgroup::CohortData;
+use crate::layout::{RAYS, Robot};
+use crate::run_folder::PlaceReading;
+use crate::world::tables::Tables;
+use crate::world::{Pose, World};
+use bytemuck::Zeroable;
+
+/// One reading of all sensors.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Senses {
+    /// Inches; index 0 straight ahead, then counter-clockwise every 15 degrees.
+    pub sonar: [u32; RAYS],
+    /// 0 or 1, in the same order.
+    pub light: [u8; RAYS],
+    /// 0 or 1: front, left, back, right.
+    pub bumpers: [u8; 4],
+    /// Degrees.
+    pub compass: f32,
+}
+
+impl Senses {
+    /// What the robot sensed last.
+    pub fn of(robot: &Robot) -> Self {
+        Self {
+            sonar: std::array::from_fn(|ray| (robot.record[ray / 4] >> (8 * (ray % 4))) & 0xff),
+            light: std::array::from_fn(|ray| ((robot.record[6] >> ray) & 1) as u8),
+            bumpers: std::array::from_fn(|side| ((robot.record[6] >> (24 + side)) & 1) as u8),
+            compass: f32::from_bits(robot.record[7]),
+        }
+    }
+}
+
+/// The memory that robots under given actions need: the floor and its segment lists, no skills.
+pub fn floor_only(world: &World) -> CohortData {
+    let tables = Tables::new(world);
+    CohortData {
+        floor: SegmentGrid::new(&tables.plan, &tables.words),
+        skills: Vec::new(),
+        tables: tables.words,
+        bank: Vec::new(),
+    }
+}
+
+/// A robot that stands at a pose.
+pub fn robot_at(pose: Pose, noise: &Noise, run_seed: u32, robot_seed: u32) -> Robot {
+    Robot {
+        x: pose.x,
+        y: pose.y,
+        heading: pose.heading,
+        action: NO_ACTION,
+        run_seed,
+        robot_seed,
+        noise_kind: noise.kind as u32,
+        noise_actuator: noise.actuator,
+        noise_sonar: noise.sonar,
+        noise_light: noise.light,
+        noise_compass: noise.compass,
+        ..Robot::zeroed()
+    }
+}
+
+/// No noise at all.
+pub const SILENT: Noise = Noise { kind: NoiseKind::Gaussian, actuator: 0.0, sonar: 0.0, light: 0.0, compass: 0.0 };
+
+/// What a robot senses at the world's named places, without noise.
+///
+/// # Errors
+/// Where the backend fails.
+pub fn places(world: &World, backend: &mut dyn Backend) -> Result<Vec<PlaceReading>, BackendError> {
+    let shared = floor_only(world);
+    let mut robots: Vec<Robot> = world.places.iter().map(|(_, pose)| robot_at(*pose, &SILENT, 0, 0)).collect();
+    if robots.is_empty() {
+        return Ok(Vec::new());
+    }
+    backend.step(&shared, &mut robots, 1)?;
+    let reading = |((place, pose), robot): (&(String, Pose), &Robot)| {
+        let senses = Senses::of(robot);
+        PlaceReading {
+            place: place.clone(),
+            x: pose.x,
+            y: pose.y,
+            heading: pose.heading,
+            sonar: senses.sonar,
+            light: senses.light,
+        }
+    };
+    Ok(world.places.iter().zip(&robots).map(reading).collect())
+}

@@ -1,0 +1,105 @@
+//! Which learners train together, and in what order.
+//!
+//! No result depends on it. A stem is trained once for each seed, and all arms that share it branch from it before the
+//! next seeds' stems are trained, so that few stems are in memory. Learners of several arms and points share a cohort if
+//! they are of one group: a sweep of thousands of points with few seeds still fills a device.
+
+use super::batch_group::{Group, LearnerId};
+use super::pretraining::{Family, families, group_index};
+use crate::config::plan::Plan;
+use std::collections::BTreeMap;
+
+/// Cohorts that go on from the same stems.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Stage {
+    /// The arm and the seeds whose stems are trained first, as one cohort; none where there is nothing below the roots.
+    pub stems: Option<(usize, Vec<u32>)>,
+    /// The cohorts, each of learners of one group.
+    pub cohorts: Vec<Vec<LearnerId>>,
+}
+
+/// The stages of a run, in order, without the learners that are `done`. `size` gives the most learners of a cohort
+/// from the bytes that one takes.
+///
+/// # Errors
+/// Those of `size`.
+pub fn stages<E>(
+    plan: &Plan,
+    groups: &[Group],
+    mut size: impl FnMut(usize) -> Result<usize, E>,
+    done: impl Fn(&LearnerId) -> bool,
+) -> Result<Vec<Stage>, E> {
+    let mut stages = Vec::new();
+    for family in families(plan) {
+        let most = size(family.bytes_per_learner(groups))?.max(1);
+        let open = family.open_seeds(plan, &done);
+        // Without stems, all seeds are in one stage.
+        let stretch = if family.stem { most } else { open.len().max(1) };
+        for seeds in parts(&open, stretch) {
+            let stems = family.stem.then(|| (family.arms[0], seeds.to_vec()));
+            stages.push(Stage { stems, cohorts: cohorts(plan, groups, &family, seeds, most, &done) });
+        }
+    }
+    Ok(stages)
+}
+
+/// The cohorts that go on from the stems of some seeds and an arm that has them, without the learners that are `done`.
+///
+/// # Errors
+/// Those of `size`.
+pub fn branching<E>(
+    plan: &Plan,
+    groups: &[Group],
+    (arm, seeds): (usize, &[u32]),
+    size: impl FnOnce(usize) -> Result<usize, E>,
+    done: impl Fn(&LearnerId) -> bool,
+) -> Result<Vec<Vec<LearnerId>>, E> {
+    let Some(family) = families(plan).into_iter().find(|family| family.arms.contains(&arm)) else {
+        return Ok(Vec::new());
+    };
+    let most = size(family.bytes_per_learner(groups))?.max(1);
+    Ok(cohorts(plan, groups, &family, seeds, most, &done))
+}
+
+fn cohorts(
+    plan: &Plan,
+    groups: &[Group],
+    family: &Family,
+    seeds: &[u32],
+    most: usize,
+    done: &impl Fn(&LearnerId) -> bool,
+) -> Vec<Vec<LearnerId>> {
+    // Tests under alterations are numbered by the root's trials, all learners of a cohort at once.
+    let trials = |arm: usize| match plan.alterations[..] {
+        [] => 0,
+        _ => plan.arms[arm].skills.last().map_or(0, |root| root.trials),
+    };
+    let mut alike: BTreeMap<(usize, u32), Vec<LearnerId>> = BTreeMap::new();
+    for arm in &family.arms {
+        let own = seeds.iter().map(|seed| LearnerId { arm: *arm, seed: *seed }).filter(|id| !done(id));
+        alike.entry((group_index(groups, *arm), trials(*arm))).or_default().extend(own);
+    }
+    alike.values().flat_map(|learners| parts(learners, most).map(<[LearnerId]>::to_vec)).collect()
+}
+
+/// Cuts into as few parts of at most `most` as possible, of about the same size.
+fn parts<T>(all: &[T], most: usize) -> impl Iterator<Item = &[T]> {
+    let count = all.len().div_ceil(most.max(1));
+    (0..count).map(move |part| &all[all.len() * part / count..all.len() * (part + 1) / count])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::parts;
+
+    #[test]
+    fn parts_are_few_and_even() {
+        let cut = |count: usize, most| parts(&vec![0; count], most).map(<[i32]>::len).collect::<Vec<_>>();
+        assert_eq!(cut(35, 32), [17, 18]);
+        assert_eq!(cut(32, 32), [32]);
+        assert_eq!(cut(5, 2), [1, 2, 2]);
+        assert!(cut(0, 3).is_empty());
+        let all: Vec<usize> = (0..100).collect();
+        assert_eq!(parts(&all, 7).flatten().copied().collect::<Vec<_>>(), all);
+    }
+}
