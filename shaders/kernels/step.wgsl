@@ -11,7 +11,7 @@
 fn step(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     let number = dispatch.first + group.x;
     var robot = robots[number];
-    let terms = Noise(robot.noise_kind, robot.noise_actuator, robot.noise_sonar, robot.noise_light, robot.noise_compass);
+    let terms = robot.noise;
     for (var iteration = 0u; iteration < dispatch.iterations; iteration++) {
         let key = vec2<u32>(robot.run_seed, robot.robot_seed);
         let stream = Stream(key, 0u, 0u, robot.step, PURPOSE_GIVEN);

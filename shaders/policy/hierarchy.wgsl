@@ -27,7 +27,7 @@ fn place(pose: Pose) {
 }
 
 fn sense(lane: u32, s: u32) {
-    let terms = noise_of(s);
+    let terms = params[s].noise;
     observe(lane, agent.x, agent.y, agent.heading, agent.bumpers, terms);
     agent.events |= following_wall(params[s].beside_near, params[s].beside_far, agent.action, agent.events);
     agent.earned = reward_of(s, agent.events);
@@ -108,7 +108,7 @@ fn descend(lane: u32, base: u32, root: u32, child: u32) -> u32 {
 }
 
 fn execute(lane: u32, s: u32, action: u32) {
-    let terms = noise_of(s);
+    let terms = params[s].noise;
     let slip = terms.actuator * noise(terms.kind, random[DRAW_ACTUATOR].x, random[DRAW_ACTUATOR].y) + 1.0f;
     let moved = move_body(lane, agent.x, agent.y, agent.heading, action, slip);
     let passed = passed_door(agent.origin, moved.x, moved.y);

@@ -7,7 +7,9 @@
 
 use super::Cohort;
 use crate::layout::phase::PHASE_FAILED;
-use crate::layout::{Episode, LANES, LAYOUTS, LESSON_HEADER, MEMORY_WORD, RECORD_WORDS, ROW_WORDS, Robot, SkillShape};
+use crate::layout::{
+    Episode, LANES, LESSON_HEADER, MEMORY_WORD, RECORD_WORDS, ROW_WORDS, Robot, SkillShape, layout_of,
+};
 use crate::qnet::backward::CLOCK_SECOND;
 use crate::qnet::forward::net_of;
 use std::fmt;
@@ -108,14 +110,14 @@ pub(crate) fn sizes(kernel: &'static str, learner: usize, what: &str, left: usiz
 
 /// Field of a shared struct that holds its word `word`.
 fn field_of(layout: &str, word: usize) -> Place {
-    let fields = LAYOUTS.iter().find(|(name, ..)| *name == layout).map_or(&[][..], |(.., fields)| fields);
+    let fields = layout_of(layout).map_or(&[][..], |layout| layout.fields);
     let Some((name, offset, wgsl)) = fields.iter().rfind(|(_, offset, _)| *offset <= 4 * word) else {
         return (format!("word {word}"), false);
     };
     let within = word - offset / 4;
     if *name == "record" {
         record_word(within)
-    } else if LAYOUTS.iter().any(|(nested, ..)| nested == wgsl) {
+    } else if layout_of(wgsl).is_some() {
         let (field, number) = field_of(wgsl, within);
         (format!("{name}.{field}"), number)
     } else if wgsl.starts_with("array") {

@@ -101,14 +101,14 @@ impl StepNoise {
         let stream = stream_of(robot);
         let apart = |number: usize| {
             let [x, y, ..] = draw(stream, number as u32);
-            noise(robot.noise_kind, x, y)
+            noise(robot.noise.kind, x, y)
         };
-        let shared = |first: u32, bearing: usize| coarse_noise(robot.noise_kind, bearing_word(stream, first, bearing));
+        let shared = |first: u32, bearing: usize| coarse_noise(robot.noise.kind, bearing_word(stream, first, bearing));
         Self {
-            slip: robot.noise_actuator * apart(DRAW_ACTUATOR) + 1.0,
-            sonar: std::array::from_fn(|ray| robot.noise_sonar * shared(0, ray) + 1.0),
-            light: std::array::from_fn(|ray| robot.noise_light * shared(DRAW_LIGHT, ray) + 1.0),
-            compass: robot.noise_compass * apart(DRAW_COMPASS),
+            slip: robot.noise.actuator * apart(DRAW_ACTUATOR) + 1.0,
+            sonar: std::array::from_fn(|ray| robot.noise.sonar * shared(0, ray) + 1.0),
+            light: std::array::from_fn(|ray| robot.noise.light * shared(DRAW_LIGHT, ray) + 1.0),
+            compass: robot.noise.compass * apart(DRAW_COMPASS),
         }
     }
 }
@@ -135,7 +135,7 @@ const FAR: f32 = 1.0e6;
 pub fn step(robot: &mut Robot, world: &WorldUniform, tables: &[u32]) {
     let stream = stream_of(robot);
     let slip_words = draw(stream, DRAW_ACTUATOR as u32);
-    let slip = robot.noise_actuator * noise(robot.noise_kind, slip_words[0], slip_words[1]) + 1.0;
+    let slip = robot.noise.actuator * noise(robot.noise.kind, slip_words[0], slip_words[1]) + 1.0;
     act(robot, world, slip);
     sense(robot, world, tables, stream);
     robot.step += 1;
@@ -246,7 +246,7 @@ fn sense(robot: &mut Robot, world: &WorldUniform, tables: &[u32], stream: Stream
     let distance2 = (lx * lx + ly * ly).max(1.0);
     let (nearness, falloff) = (reciprocal_sqrt(distance2), world.light_range2 * reciprocal(distance2));
     // No noise reaches 3.5.
-    let reached = world.lit == 1 && falloff * (robot.noise_light * 3.5 + 1.0) > 1.0;
+    let reached = world.lit == 1 && falloff * (robot.noise.light * 3.5 + 1.0) > 1.0;
     let seen = reached && in_sight(world, x, y);
     let mut readings = [0_u32; 24];
     let mut lit = 0;
@@ -256,13 +256,13 @@ fn sense(robot: &mut Robot, world: &WorldUniform, tables: &[u32], stream: Stream
         let ux = cosine * ray_cosine - sine * ray_sine;
         let uy = sine * ray_cosine + cosine * ray_sine;
         let facing = if ray < LINES { 1.0 } else { -1.0 };
-        let noise = coarse_noise(robot.noise_kind, bearing_word(stream, 0, ray));
-        *slot = reading(cast(&near, ux, uy, facing), robot.noise_sonar * noise + 1.0);
+        let noise = coarse_noise(robot.noise.kind, bearing_word(stream, 0, ray));
+        *slot = reading(cast(&near, ux, uy, facing), robot.noise.sonar * noise + 1.0);
         if seen {
             let aim = facing * ((ux * lx + uy * ly) * nearness);
             let bright = falloff * exponential(14.590_25 * (aim - 1.0));
-            let noise = coarse_noise(robot.noise_kind, bearing_word(stream, DRAW_LIGHT, ray));
-            lit |= u32::from(bright * (robot.noise_light * noise + 1.0) > 1.0) << ray;
+            let noise = coarse_noise(robot.noise.kind, bearing_word(stream, DRAW_LIGHT, ray));
+            lit |= u32::from(bright * (robot.noise.light * noise + 1.0) > 1.0) << ray;
         }
     }
     for (word, four) in readings.as_chunks::<4>().0.iter().enumerate() {
@@ -270,8 +270,8 @@ fn sense(robot: &mut Robot, world: &WorldUniform, tables: &[u32], stream: Stream
     }
     robot.record[6] = lit | robot.bumpers << 24;
     let words = draw(stream, DRAW_COMPASS as u32);
-    let error = noise(robot.noise_kind, words[0], words[1]);
-    robot.record[7] = wrap_degrees(robot.heading + robot.noise_compass * error).to_bits();
+    let error = noise(robot.noise.kind, words[0], words[1]);
+    robot.record[7] = wrap_degrees(robot.heading + robot.noise.compass * error).to_bits();
 }
 
 /// Distance to the nearest segment along a line, ahead (`facing` 1) or behind (-1).

@@ -105,7 +105,7 @@ impl Task for RobotSteps {
 
     fn cost(&self) -> Option<(Cost, Limit, Option<Limit>)> {
         let Walk { shared, robots, .. } = &self.walk;
-        let light = robots.first().map_or(0.0, |robot| robot.noise_light);
+        let light = robots.first().map_or(0.0, |robot| robot.noise.light);
         let places = robots.iter().map(|robot| (robot.x, robot.y));
         Some((cost::step(&shared.floor, light, places, 1.0 / 3.0, BATCH), Limit::CompareSelect, None))
     }

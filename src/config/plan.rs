@@ -244,6 +244,13 @@ pub struct Noise {
     pub compass: f32,
 }
 
+impl From<Noise> for crate::layout::Noise {
+    fn from(noise: Noise) -> Self {
+        let Noise { kind, actuator, sonar, light, compass } = noise;
+        Self { kind: kind as u32, actuator, sonar, light, compass }
+    }
+}
+
 /// When and how learners are tested.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Evaluate {

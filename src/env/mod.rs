@@ -7,7 +7,6 @@ pub mod events;
 pub mod light;
 pub mod memory;
 pub mod motion;
-pub mod noise;
 pub mod observe;
 pub mod reset;
 pub mod segments;

@@ -9,7 +9,7 @@ use crate::env::motion::{NO_ACTION, go, heading_after};
 use crate::env::observe::{DRAW_ACTUATOR, DRAW_COMPASS, SONAR_WORDS, compass, hear, packed, see};
 use crate::env::sonar::rays;
 use crate::env::workgroup::CohortData;
-use crate::layout::{BASE_WORDS, Noise, Robot};
+use crate::layout::{BASE_WORDS, Robot};
 use crate::math::functions::sin_cos;
 use crate::math::rng::{BATCH, Purpose, Stream, bearing_words, draws, noise};
 use std::hint::black_box;
@@ -59,11 +59,11 @@ pub fn step(robots: &mut [Robot], shared: &CohortData) {
     let mut before = Before::default();
     for i in 0..robots.len() {
         let robot = &robots[i];
-        before.kind[i] = robot.noise_kind;
+        before.kind[i] = robot.noise.kind;
         before.action[i] = robot.action;
         before.heading[i] = robot.heading;
-        before.actuator[i] = robot.noise_actuator;
-        before.compass[i] = robot.noise_compass;
+        before.actuator[i] = robot.noise.actuator;
+        before.compass[i] = robot.noise.compass;
         for word in 0..2 {
             before.slip[word][i] = random[i][word][DRAW_ACTUATOR];
             before.error[word][i] = random[i][word][DRAW_COMPASS];
@@ -88,14 +88,14 @@ pub fn step(robots: &mut [Robot], shared: &CohortData) {
         let robot = &mut robots[i];
         let (ux, uy) = rays(after.cosine[i], after.sine[i]);
         let words = bearing_words(&random[i][0], &random[i][1], &random[i][2], &random[i][3]);
-        let readings = hear(floor, &words, robot.x, robot.y, &ux, &uy, terms_of(robot));
+        let readings = hear(floor, &words, robot.x, robot.y, &ux, &uy, robot.noise);
         robot.record = [0; BASE_WORDS];
         robot.record[..SONAR_WORDS].copy_from_slice(&packed(&readings));
     }
     for i in 0..robots.len() {
         let robot = &mut robots[i];
         let (ux, uy) = rays(after.cosine[i], after.sine[i]);
-        let lit = see(floor, stream_of(robot), robot.x, robot.y, &ux, &uy, terms_of(robot));
+        let lit = see(floor, stream_of(robot), robot.x, robot.y, &ux, &uy, robot.noise);
         robot.record[6] = lit | robot.bumpers << 24;
         robot.record[7] = after.shown[i].to_bits();
         robot.step += 1;
@@ -115,17 +115,6 @@ fn turn(before: &Before, after: &mut After) {
         after.shown[i] = compass(heading, error, before.compass[i]);
         after.heading[i] = heading;
         after.slip[i] = slip;
-    }
-}
-
-#[inline(always)]
-fn terms_of(robot: &Robot) -> Noise {
-    Noise {
-        kind: robot.noise_kind,
-        actuator: robot.noise_actuator,
-        sonar: robot.noise_sonar,
-        light: robot.noise_light,
-        compass: robot.noise_compass,
     }
 }
 

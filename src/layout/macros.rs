@@ -1,5 +1,16 @@
 //! Macros that declare constants and structs for Rust and, from the same lines, for WGSL.
 
+/// A struct as Rust lays it out.
+#[derive(Debug, Clone, Copy)]
+pub struct Layout {
+    /// Its name.
+    pub name: &'static str,
+    /// Its bytes.
+    pub size: usize,
+    /// Name, offset in bytes and WGSL type of each field.
+    pub fields: &'static [(&'static str, usize, &'static str)],
+}
+
 macro_rules! constants {
     ($($(#[$doc:meta])* $name:ident = $value:expr;)*) => {
         $($(#[$doc])* pub const $name: usize = $value;)*
@@ -16,19 +27,18 @@ macro_rules! shared {
             #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
             pub struct $name { $($(#[$field_doc])* pub $field: shared!(@rust $kind),)* }
         )*
-        /// WGSL text of every shared struct, in order of use.
-        pub const STRUCTS: &[&str] = &[$(concat!(
+        /// WGSL text of these structs.
+        pub(super) const STRUCTS: &[&str] = &[$(concat!(
             "struct ", stringify!($name), " {\n",
             $("    ", stringify!($field), ": ", shared!(@wgsl $kind), ",\n",)*
             "}\n"
         )),*];
-        /// Name and size of every shared struct as Rust lays it out; name, offset in bytes and WGSL type of
-        /// each of its fields.
-        pub const LAYOUTS: &[(&str, usize, &[(&str, usize, &str)])] = &[$((
-            stringify!($name),
-            size_of::<$name>(),
-            &[$((stringify!($field), std::mem::offset_of!($name, $field), shared!(@wgsl $kind))),*],
-        )),*];
+        /// How Rust lays these structs out.
+        pub(super) const LAYOUTS: &[$crate::layout::Layout] = &[$($crate::layout::Layout {
+            name: stringify!($name),
+            size: size_of::<$name>(),
+            fields: &[$((stringify!($field), std::mem::offset_of!($name, $field), shared!(@wgsl $kind))),*],
+        }),*];
     };
     (@rust u32) => { u32 };
     (@rust f32) => { f32 };

@@ -1,11 +1,37 @@
-//! Ground floor: the words of every buffer that a kernel touches, written once for Rust and WGSL.
+//! Ground floor: the words of every buffer that a kernel touches, written once.
+//!
+//! Each struct is declared for Rust and, from the same lines, for WGSL: [`prelude`] is the text that opens every
+//! shader. All fields are 32 bits wide, so both languages give them the same offsets.
 
 #[macro_use]
 mod macros;
 
+mod dispatch;
+mod params;
 pub mod phase;
 pub mod prelude;
 pub mod purpose;
-mod records;
+mod shape;
+mod sizes;
+mod state;
+mod world;
 
-pub use records::*;
+pub use dispatch::Dispatch;
+pub use macros::Layout;
+pub use params::{HyperParams, Noise};
+pub use shape::SkillShape;
+pub use sizes::*;
+pub use state::{Agent, Episode, LearnerState, Robot};
+pub use world::{Area, Segment, WorldUniform};
+
+/// How Rust lays out every struct that the shaders share.
+pub const LAYOUTS: [&[Layout]; 5] =
+    [world::LAYOUTS, shape::LAYOUTS, params::LAYOUTS, state::LAYOUTS, dispatch::LAYOUTS];
+
+/// WGSL text of every one of them.
+const STRUCTS: [&[&str]; 5] = [world::STRUCTS, shape::STRUCTS, params::STRUCTS, state::STRUCTS, dispatch::STRUCTS];
+
+/// How Rust lays out the struct of this name.
+pub fn layout_of(name: &str) -> Option<&'static Layout> {
+    LAYOUTS.into_iter().flatten().find(|layout| layout.name == name)
+}

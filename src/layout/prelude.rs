@@ -17,7 +17,7 @@ pub fn prelude() -> String {
     for (name, phase) in PHASES {
         let _ = writeln!(text, "const {name}: u32 = {phase}u;");
     }
-    for declaration in STRUCTS {
+    for declaration in STRUCTS.into_iter().flatten() {
         text.push_str(declaration);
     }
     text

@@ -6,7 +6,6 @@
 use crate::env::events::{following_wall, passed_door, reward_of, room_of};
 use crate::env::memory::remember;
 use crate::env::motion::{COLLISION, NO_ACTION, PASSED_DOOR, move_body};
-use crate::env::noise::noise_of;
 use crate::env::observe::{DRAW_ACTUATOR, DRAW_CHOICE, observe};
 use crate::env::workgroup::{CohortData, Scratch};
 use crate::layout::{Agent, BASE_WORDS, HyperParams, MAX_CHILDREN, MAX_DEPTH, MAX_SKILLS, SKILL_CODE};
@@ -39,7 +38,7 @@ pub fn place(agent: &mut Agent, shared: &CohortData, pose: Pose) {
 /// Senses, settles what the last action earned in the terms of the skill pursued, and remembers.
 #[inline(always)]
 pub fn sense(agent: &mut Agent, shared: &CohortData, scratch: &mut Scratch, params: &HyperParams, random: &StepRandom) {
-    let terms = noise_of(params);
+    let terms = params.noise;
     observe(shared, &mut scratch.record, random, agent.x, agent.y, agent.heading, agent.bumpers, terms);
     agent.events |= following_wall(&scratch.record, params.beside_near, params.beside_far, agent.action, agent.events);
     agent.earned = reward_of(params, agent.events);
@@ -150,7 +149,7 @@ pub fn descend(
 /// Carries out an action; its reward is settled by the next look.
 #[inline(always)]
 pub fn execute(agent: &mut Agent, shared: &CohortData, params: &HyperParams, action: u32, random: &StepRandom) {
-    let terms = noise_of(params);
+    let terms = params.noise;
     let slip = terms.actuator * noise(terms.kind, random.x[DRAW_ACTUATOR], random.y[DRAW_ACTUATOR]) + 1.0;
     let moved = move_body(&shared.floor, agent.x, agent.y, agent.heading, action, slip);
     let passed = passed_door(&shared.floor.plan, agent.origin, moved.x, moved.y);

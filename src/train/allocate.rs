@@ -1,6 +1,6 @@
 //! From a plan to the memory of a cohort: every derived size is computed here, once.
 
-use crate::config::plan::{Arm, Child, Input, NoiseKind, Optimiser, Skill, Threshold};
+use crate::config::plan::{Arm, Child, Input, Optimiser, Skill, Threshold};
 use crate::layout::{
     BASE_WORDS, EVENTS, HyperParams, LANES, LESSON_HEADER, LearnerState, MAX_CHILDREN, MAX_GROUPS, MAX_INPUTS,
     MAX_ROWS, MAX_SKILLS, MAX_STARTS, RECORD_WORDS, ROW_WORDS, SKILL_CODE, SONAR_CODES, SkillShape,
@@ -228,7 +228,7 @@ fn sonar_table(input: Input) -> [f32; SONAR_CODES] {
 }
 
 fn params_of(skill: &Skill, arm: &Arm, run_seed: u32, seed: u32) -> HyperParams {
-    let (learning, noise, robot) = (&skill.learning, &arm.noise, &arm.robot);
+    let (learning, robot) = (&skill.learning, &arm.robot);
     let persistence = &skill.persistence;
     let mut threshold = [ALWAYS; MAX_CHILDREN];
     for (value, own) in threshold.iter_mut().zip(&skill.applicable) {
@@ -250,14 +250,7 @@ fn params_of(skill: &Skill, arm: &Arm, run_seed: u32, seed: u32) -> HyperParams 
     HyperParams {
         run_seed,
         learner_seed: seed,
-        noise_kind: match noise.kind {
-            NoiseKind::Gaussian => 0,
-            NoiseKind::Uniform => 1,
-        },
-        noise_actuator: noise.actuator,
-        noise_sonar: noise.sonar,
-        noise_light: noise.light,
-        noise_compass: noise.compass,
+        noise: arm.noise.into(),
         hidden: learning.hidden,
         unit_share: 1.0 / learning.hidden as f32,
         init: learning.init,

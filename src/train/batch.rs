@@ -171,11 +171,7 @@ fn alter(climb: &mut Climb<'_>, trained: &Cohort) -> Result<(), Halt> {
         cohort.shared.clone_from(shared);
         for params in &mut cohort.params {
             let Some(noise) = alteration.noise else { continue };
-            params.noise_kind = noise.kind as u32;
-            params.noise_actuator = noise.actuator;
-            params.noise_sonar = noise.sonar;
-            params.noise_light = noise.light;
-            params.noise_compass = noise.compass;
+            params.noise = noise.into();
         }
         climb.backend.load(cohort)?;
         let taker = Taker {

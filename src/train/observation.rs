@@ -56,11 +56,7 @@ pub fn robot_at(pose: Pose, noise: &Noise, run_seed: u32, robot_seed: u32) -> Ro
         action: NO_ACTION,
         run_seed,
         robot_seed,
-        noise_kind: noise.kind as u32,
-        noise_actuator: noise.actuator,
-        noise_sonar: noise.sonar,
-        noise_light: noise.light,
-        noise_compass: noise.compass,
+        noise: (*noise).into(),
         ..Robot::zeroed()
     }
 }

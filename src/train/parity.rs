@@ -71,7 +71,7 @@ fn robots(plan: &Plan) -> Vec<Robot> {
         .map(|(number, pose)| {
             let robot = robot_at(pose, &noise, plan.run_seed, number);
             let flat = [NoiseKind::Gaussian, NoiseKind::Uniform][number as usize % 2];
-            Robot { noise_kind: flat as u32, ..robot }
+            Robot { noise: crate::layout::Noise { kind: flat as u32, ..robot.noise }, ..robot }
         })
         .collect()
 }

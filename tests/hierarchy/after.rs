@@ -233,7 +233,7 @@ fn alterations_test_what_was_learned_elsewhere() {
         let own = plan.arms[0].noise;
         assert_eq!((noise.light, noise.sonar, noise.kind), (0.0, own.sonar, own.kind));
         for params in &mut there.params {
-            params.noise_light = 0.0;
+            params.noise.light = 0.0;
         }
         let mut backend = CpuBackend::new(2, None).expect("threads");
         backend.load(there).expect("memory");

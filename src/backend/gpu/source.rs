@@ -44,7 +44,6 @@ const MOVE: Part = part!("env/motion.wgsl");
 const COLLIDE: Part = part!("env/contact.wgsl");
 const SONAR: Part = part!("env/sonar.wgsl");
 const LIGHT: Part = part!("env/light.wgsl");
-const NOISE: Part = part!("env/noise.wgsl");
 const ACT: Part = part!("policy/hierarchy.wgsl");
 const OBSERVE: Part = part!("env/observe.wgsl");
 const REMEMBER: Part = part!("env/memory.wgsl");
@@ -71,7 +70,6 @@ pub const ADVANCE: Kernel = Kernel {
         COLLIDE,
         SONAR,
         LIGHT,
-        NOISE,
         ACT,
         OBSERVE,
         REMEMBER,
@@ -100,7 +98,6 @@ pub const EVALUATE: Kernel = Kernel {
         COLLIDE,
         SONAR,
         LIGHT,
-        NOISE,
         ACT,
         OBSERVE,
         REMEMBER,

@@ -1,0 +1,48 @@
+//! Sizes that both languages share.
+
+constants! {
+    /// Invocations of a workgroup; elements of every lane array.
+    LANES = 32;
+    /// Sonar and light bearings, 15 degrees apart.
+    RAYS = 24;
+    /// Most children of a skill.
+    MAX_CHILDREN = 8;
+    /// Most inputs of a net.
+    MAX_INPUTS = 64;
+    /// Most rows of weights of a net, in whole lane arrays: inputs, outputs and two of biases.
+    MAX_ROWS = 96;
+    /// Most input groups of a skill.
+    MAX_GROUPS = 12;
+    /// Most segments of a world.
+    MAX_SEGMENTS = 256;
+    /// Most rooms of a world.
+    MAX_ROOMS = 16;
+    /// Most doors of a world.
+    MAX_DOORS = 16;
+    /// Most start regions of a skill.
+    MAX_STARTS = 4;
+    /// Most skills of a learner.
+    MAX_SKILLS = 8;
+    /// Most skills between the root of a tree and an action, the root counted.
+    MAX_DEPTH = 6;
+    /// Code of a skill's first skill as a child; lower codes are actions.
+    SKILL_CODE = 16;
+    /// Words of one recorded step of a skill over actions.
+    BASE_WORDS = 10;
+    /// Words of one recorded step of a skill over skills.
+    RECORD_WORDS = 25;
+    /// Word of a record at which the memories stand.
+    MEMORY_WORD = 11;
+    /// Memories.
+    MEMORIES = 6;
+    /// Word of a record at which the children's values stand.
+    VALUE_WORD = 17;
+    /// Words that open a lesson: its steps, how it ended, its reward, its collisions.
+    LESSON_HEADER = 4;
+    /// Kinds of events that a reward can name.
+    EVENTS = 5;
+    /// Words of one row of the trial table.
+    ROW_WORDS = 8;
+    /// Entries of a sonar coding table.
+    SONAR_CODES = 128;
+}
