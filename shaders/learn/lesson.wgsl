@@ -6,11 +6,10 @@
 
 const ENDED: u32 = 1u;
 const CUT: u32 = 2u;
-const EVENTS_FROM: u32 = 24u;
 
 fn note(lane: u32, child: u32, options: Options) {
     if lane == 0u {
-        record[8] = child | (options.allowed << 8u) | (options.choices << 16u) | (options.decision << 31u);
+        record[8] = child | (options.allowed << 8u) | (options.choices << 16u) | (options.decision << DECISION_BIT);
         record[9] = 0u;
     }
     workgroupBarrier();

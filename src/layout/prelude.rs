@@ -2,10 +2,10 @@
 
 use super::phase::PHASES;
 use super::purpose::PURPOSES;
-use super::{CONSTANTS, STRUCTS};
+use super::{ACTIONS, CONSTANTS, STRUCTS, actions, events, sensors};
 use std::fmt::Write;
 
-/// The text that opens every shader: constants, random purposes and structs.
+/// The text that opens every shader: constants, codes, random purposes and structs.
 pub fn prelude() -> String {
     let mut text = String::new();
     for (name, value) in CONSTANTS {
@@ -17,6 +17,12 @@ pub fn prelude() -> String {
     for (name, phase) in PHASES {
         let _ = writeln!(text, "const {name}: u32 = {phase}u;");
     }
+    for (name, code) in [actions::CODES, events::CODES, sensors::CODES].into_iter().flatten() {
+        let _ = writeln!(text, "const {name}: u32 = {code}u;");
+    }
+    let turns: Vec<String> = actions::ACTION_TURN.iter().map(|degrees| format!("{degrees:?}f")).collect();
+    let _ = writeln!(text, "const ACTIONS: u32 = {ACTIONS}u;");
+    let _ = writeln!(text, "const ACTION_TURN = array<f32, {ACTIONS}>({});", turns.join(", "));
     for declaration in STRUCTS.into_iter().flatten() {
         text.push_str(declaration);
     }

@@ -39,8 +39,6 @@ constants! {
     VALUE_WORD = 17;
     /// Words that open a lesson: its steps, how it ended, its reward, its collisions.
     LESSON_HEADER = 4;
-    /// Kinds of events that a reward can name.
-    EVENTS = 5;
     /// Words of one row of the trial table.
     ROW_WORDS = 8;
     /// Entries of a sonar coding table.

@@ -4,6 +4,8 @@
 //! choice is made, from bit 24 the events, and bit 31 where the choice was free. Word 9: the reward. Events and
 //! reward are written one step later, by the look that settles them.
 
+use crate::layout::events::DECISION_BIT;
+pub use crate::layout::events::EVENTS_FROM;
 use crate::layout::{LESSON_HEADER, LearnerState, RECORD_WORDS, ROW_WORDS};
 use crate::policy::persistence::Options;
 
@@ -11,13 +13,11 @@ use crate::policy::persistence::Options;
 pub const ENDED: u32 = 1;
 /// The step limit cut the trial.
 pub const CUT: u32 = 2;
-/// Bit of word 8 from which the events stand.
-pub const EVENTS_FROM: u32 = 24;
 
 /// Notes in words 8 and 9 of the record what was chosen, and among what.
 #[inline(always)]
 pub fn note(record: &mut [u32; RECORD_WORDS], child: u32, options: Options) {
-    record[8] = child | options.allowed << 8 | options.choices << 16 | options.decision << 31;
+    record[8] = child | options.allowed << 8 | options.choices << 16 | options.decision << DECISION_BIT;
     record[9] = 0;
 }
 

@@ -3,8 +3,8 @@
 use super::loop_limit::SAFE_TURNS;
 use crate::env::events::{SIDE_FIRST, SIDE_LAST};
 use crate::env::workgroup::CohortData;
+use crate::layout::sensors::{GROUP_APPLICABLE, GROUP_VALUES};
 use crate::layout::{BASE_WORDS, EVENTS, LANES, MAX_CHILDREN, SKILL_CODE, SkillShape, WorldUniform};
-use crate::policy::features::{GROUP_APPLICABLE, GROUP_VALUES};
 use std::time::Duration;
 
 /// Duration that dispatches aim at.
