@@ -1,18 +1,9 @@
 // The six actions: noisy turns in place and noisy travel that stops at contact.
 
-const DOCKED: u32 = 1u;
-const COLLISION: u32 = 2u;
-const PASSED_DOOR: u32 = 4u;
-const BESIDE_RIGHT: u32 = 8u;
-const BESIDE_LEFT: u32 = 16u;
-const FORWARD: u32 = 4u;
-const BACKWARD: u32 = 5u;
-const NO_ACTION: u32 = 255u;
-
 fn turn_of(action: u32) -> f32 {
-    let size = select(60.0f, 15.0f, action < 2u);
-    let signed = select(size, -size, (action & 1u) == 1u);
-    return select(0.0f, signed, action < FORWARD);
+    let known = action < ACTIONS;
+    let row = select(0u, action, known);
+    return select(0.0f, ACTION_TURN[row], known);
 }
 
 fn heading_after(heading: f32, action: u32, slip: f32) -> f32 {

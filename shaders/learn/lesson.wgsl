@@ -4,11 +4,8 @@
 // a free choice is made, from bit 24 the events, and bit 31 where the choice was free. Events and reward are written one
 // step later, by the observation that settles them.
 
-const EVENTS_FROM: u32 = 24u;
-const DECISION_FROM: u32 = 31u;
-
 fn choice_word(child: u32, choices: Choices) -> u32 {
-    return child | (choices.allowed << 8u) | (choices.offered << 16u) | (choices.decision << DECISION_FROM);
+    return child | (choices.allowed << 8u) | (choices.offered << 16u) | (choices.decision << DECISION_BIT);
 }
 
 fn choice_child(word: u32) -> u32 {
@@ -24,7 +21,7 @@ fn choice_offered(word: u32) -> u32 {
 }
 
 fn choice_is_free(word: u32) -> bool {
-    return (word >> DECISION_FROM) != 0u;
+    return (word >> DECISION_BIT) != 0u;
 }
 
 fn set_choice(lane: u32, child: u32, choices: Choices) {

@@ -1,20 +1,5 @@
 // What a net is given of a recorded step: groups of inputs, one after another.
 
-const GROUP_SONAR: u32 = 0u;
-const GROUP_LIGHT: u32 = 1u;
-const GROUP_BUMPERS: u32 = 2u;
-const GROUP_COMPASS: u32 = 3u;
-const GROUP_COMPASS2: u32 = 4u;
-const GROUP_SONAR_COMPASS: u32 = 5u;
-const GROUP_LIT: u32 = 6u;
-const GROUP_VALUES: u32 = 7u;
-const GROUP_APPLICABLE: u32 = 8u;
-const GROUP_RUNNING: u32 = 9u;
-const GROUP_LIGHT_TRACE: u32 = 10u;
-const GROUP_DOOR_TRACE: u32 = 11u;
-const GROUP_RANGE_MEANS: u32 = 12u;
-const GROUP_ROOM: u32 = 13u;
-
 var<workgroup> inputs: array<f32, MAX_INPUTS>;
 
 fn sonar_feature(table: u32, ray: u32) -> f32 {

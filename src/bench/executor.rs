@@ -2,7 +2,7 @@
 
 use super::BenchError;
 use crate::backend::Backend;
-use crate::backend::cpu::CpuBackend;
+use crate::backend::cpu::cpu_backend;
 use crate::backend::gpu::adapter::{adapters, choose};
 use crate::backend::gpu::device::is_software;
 use crate::backend::gpu::{GpuBackend, GpuOptions};
@@ -79,7 +79,7 @@ impl Executor {
     }
 
     fn cpu(threads: usize) -> Result<Self, BenchError> {
-        let backend = CpuBackend::new(threads, None)?;
+        let backend = cpu_backend(threads, None)?;
         Ok(Self::of(&format!("cpu-{threads}"), Kind::Cpu, threads, Box::new(backend)))
     }
 }

@@ -5,7 +5,7 @@ use super::clock::{Spread, timed};
 use super::result::Origin;
 use super::run::origin;
 use super::workload::{self, DOCKING};
-use crate::backend::cpu::CpuBackend;
+use crate::backend::cpu::cpu_backend;
 use crate::train::batch::train;
 use crate::train::batch_group::groups;
 use serde::{Deserialize, Serialize};
@@ -66,7 +66,7 @@ pub fn scaling(counts: &[u32], samples: u32, command: &str, note: &mut dyn FnMut
     let seeds = group.learners(&plan);
     let ids = |count: u32| seeds.iter().copied().cycle().take(count as usize).collect::<Vec<_>>();
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let mut backend = CpuBackend::new(threads, None)?;
+    let mut backend = cpu_backend(threads, None)?;
     let mut spans: Vec<Vec<(f64, f64)>> = counts.iter().map(|_| Vec::new()).collect();
     // The first round touches all memory for the first time.
     for sample in 0..=samples {

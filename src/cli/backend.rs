@@ -1,7 +1,7 @@
 //! Which backend executes the kernels.
 
 use super::output::tell;
-use crate::backend::cpu::CpuBackend;
+use crate::backend::cpu::cpu_backend;
 use crate::backend::gpu::{GpuBackend, GpuOptions};
 use crate::backend::{Backend, BackendError};
 use clap::{Args, ValueEnum};
@@ -56,6 +56,6 @@ impl BackendArguments {
     }
 
     fn cpu(&self) -> Result<Box<dyn Backend>, BackendError> {
-        Ok(Box::new(CpuBackend::new(self.threads as usize, self.iterations)?))
+        Ok(Box::new(cpu_backend(self.threads as usize, self.iterations)?))
     }
 }

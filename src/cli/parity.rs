@@ -2,7 +2,7 @@
 
 use super::output::print;
 use super::{Failure, count};
-use crate::backend::cpu::CpuBackend;
+use crate::backend::cpu::cpu_backend;
 use crate::backend::gpu::adapter::{adapters, choose};
 use crate::backend::gpu::{GpuBackend, GpuOptions};
 use crate::config::{Overrides, load};
@@ -20,7 +20,7 @@ pub(super) fn check(config: &Path, learners: usize) -> Result<(), Failure> {
         choose(None, true)?;
     }
     let work = Work::new(&plan, learners)?;
-    let expected = work.run(&mut CpuBackend::new(0, None)?)?;
+    let expected = work.run(&mut cpu_backend(0, None)?)?;
     let mut differing = 0;
     for adapter in &found {
         let sample = GpuBackend::on(adapter, &GpuOptions::default()).and_then(|mut gpu| work.run(&mut gpu));

@@ -2,31 +2,17 @@
 
 use super::workgroup::Workgroup;
 use crate::layout::Moved;
+use crate::layout::actions::{ACTION_TURN, ACTIONS};
+pub use crate::layout::actions::{BACKWARD, FORWARD, NO_ACTION};
+pub use crate::layout::events::{BESIDE_LEFT, BESIDE_RIGHT, COLLISION, DOCKED, PASSED_DOOR};
 use crate::math::functions::{sin_cos, wrap_degrees};
-
-/// The charger stopped a forward move within the docking tolerance.
-pub const DOCKED: u32 = 1;
-/// Contact cut a move short, and it did not dock.
-pub const COLLISION: u32 = 2;
-/// The centre reached another room than the one before and is clear of the doorway.
-pub const PASSED_DOOR: u32 = 4;
-/// A forward move ended beside a wall on the right.
-pub const BESIDE_RIGHT: u32 = 8;
-/// A forward move ended beside a wall on the left.
-pub const BESIDE_LEFT: u32 = 16;
-/// Code of the forward move.
-pub const FORWARD: u32 = 4;
-/// Code of the backward move.
-pub const BACKWARD: u32 = 5;
-/// Code that stands for no action.
-pub const NO_ACTION: u32 = 255;
 
 /// Degrees that an action turns, without noise.
 #[inline(always)]
 pub fn turn_of(action: u32) -> f32 {
-    let size = if action < 2 { 15.0 } else { 60.0 };
-    let signed = if (action & 1) == 1 { -size } else { size };
-    if action < FORWARD { signed } else { 0.0 }
+    let known = action < ACTIONS as u32;
+    let row = if known { action } else { 0 };
+    if known { ACTION_TURN[row as usize] } else { 0.0 }
 }
 
 /// Heading after an action whose length is off by the factor `slip`, degrees.

@@ -7,25 +7,33 @@
 mod macros;
 
 mod codes;
+pub mod actions;
 mod dispatch;
+pub mod events;
 mod params;
 pub mod prelude;
 pub mod purpose;
 mod records;
+pub mod sensors;
 mod shape;
 mod sizes;
 mod state;
 mod world;
+mod world_parts;
 
 pub use codes::*;
+pub use actions::{ACTIONS, Action};
 pub use dispatch::Dispatch;
+pub use events::{EVENTS, Event};
 pub use macros::Layout;
 pub use params::{HyperParams, Noise};
 pub use records::{LessonHeader, Observation, Step, TrialRecord};
+pub use sensors::Input;
 pub use shape::SkillShape;
 pub use sizes::*;
 pub use state::{Agent, Episode, LearnerState, Moved, Robot};
 pub use world::{Area, Segment, WorldUniform};
+pub use world_parts::WorldPart;
 
 /// How Rust lays out every struct that the shaders share.
 pub const LAYOUTS: [&[Layout]; 6] =

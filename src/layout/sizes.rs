@@ -37,8 +37,8 @@ constants! {
     STEP_WORDS = size_of::<super::Step>() / 4;
     /// Words that open a lesson.
     LESSON_HEADER_WORDS = size_of::<super::LessonHeader>() / 4;
-    /// Kinds of events that a reward can name.
-    EVENTS = 5;
+    /// Words of a row of the trial table.
+    TRIAL_WORDS = size_of::<super::TrialRecord>() / 4;
     /// Entries of a sonar coding table.
     SONAR_CODES = 128;
 }

@@ -5,16 +5,11 @@
 //! step later, by the observation that settles them.
 
 use crate::env::workgroup::Workgroup;
+use crate::layout::events::{DECISION_BIT, EVENTS_FROM};
 use crate::layout::{EVENTS, LESSON_HEADER_WORDS, LessonHeader, Step, TERMINATED, TrialRecord};
 use crate::policy::persistence::Choices;
 use std::mem::offset_of;
 
-/// Bit of a choice from which the events stand.
-pub const EVENTS_FROM: u32 = 24;
-/// Bit of a choice that is set where it was free.
-pub const DECISION_FROM: u32 = 31;
-
-const _: () = assert!(EVENTS_FROM as usize + EVENTS <= DECISION_FROM as usize, "no event may meet the decision bit");
 
 /// Word of a step that holds the choice.
 pub const STEP_CHOICE: usize = offset_of!(Step, choice) / 4;
@@ -28,7 +23,7 @@ pub const LESSON_END: usize = offset_of!(LessonHeader, end) / 4;
 /// Packs what was chosen, and among what.
 #[inline(always)]
 pub fn choice_word(child: u32, choices: Choices) -> u32 {
-    child | (choices.allowed << 8) | (choices.offered << 16) | (choices.decision << DECISION_FROM)
+    child | (choices.allowed << 8) | (choices.offered << 16) | (choices.decision << DECISION_BIT)
 }
 
 /// The child that was chosen.
@@ -52,7 +47,7 @@ pub fn choice_offered(word: u32) -> u32 {
 /// Whether the choice was free.
 #[inline(always)]
 pub fn choice_is_free(word: u32) -> bool {
-    (word >> DECISION_FROM) != 0
+    (word >> DECISION_BIT) != 0
 }
 
 /// What a choice brought about.

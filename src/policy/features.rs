@@ -3,37 +3,12 @@
 use crate::env::sonar::READINGS_PER_DEGREE;
 use crate::env::workgroup::Workgroup;
 use crate::layout::RAYS;
+use crate::layout::sensors::{
+    GROUP_BUMPERS, GROUP_COMPASS, GROUP_COMPASS2, GROUP_DOOR_TRACE, GROUP_LIGHT, GROUP_LIGHT_TRACE, GROUP_LIT,
+    GROUP_RANGE_MEANS, GROUP_ROOM, GROUP_RUNNING, GROUP_SONAR, GROUP_SONAR_COMPASS, GROUP_VALUES,
+};
 use crate::math::functions::{sin_cos, wrap_degrees};
 use crate::policy::applicability::{high_level_applicable, high_level_room, high_level_running};
-
-/// Input group: a table of the sonar reading.
-pub const GROUP_SONAR: u32 = 0;
-/// Input group: light bits.
-pub const GROUP_LIGHT: u32 = 1;
-/// Input group: bumper bits.
-pub const GROUP_BUMPERS: u32 = 2;
-/// Input group: cosine and sine of the compass.
-pub const GROUP_COMPASS: u32 = 3;
-/// Input group: cosine and sine of twice the compass.
-pub const GROUP_COMPASS2: u32 = 4;
-/// Input group: the sonar's table turned by the compass.
-pub const GROUP_SONAR_COMPASS: u32 = 5;
-/// Input group: whether any bearing is lit.
-pub const GROUP_LIT: u32 = 6;
-/// Input group: values of the children that have a threshold.
-pub const GROUP_VALUES: u32 = 7;
-/// Input group: which of them are applicable.
-pub const GROUP_APPLICABLE: u32 = 8;
-/// Input group: which child has been running.
-pub const GROUP_RUNNING: u32 = 9;
-/// Input group: trace of the light.
-pub const GROUP_LIGHT_TRACE: u32 = 10;
-/// Input group: trace of a door and the way through it.
-pub const GROUP_DOOR_TRACE: u32 = 11;
-/// Input group: means of ranges.
-pub const GROUP_RANGE_MEANS: u32 = 12;
-/// Input group: which room this is. Privileged.
-pub const GROUP_ROOM: u32 = 13;
 
 impl Workgroup<'_> {
     /// Entry of the sonar table at word `table` for one ray of the record.

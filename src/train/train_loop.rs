@@ -7,9 +7,7 @@ use super::batch_group::{Group, LearnerId};
 use super::result::{LearnerResult, RoomSums, TestResult};
 use crate::backend::{Backend, BackendError, Cohort, Stop, Test};
 use crate::config::plan::Plan;
-use crate::kernels::evaluate::STATE_ACHIEVED;
-use crate::layout::phase::PHASE_FAILED;
-use crate::layout::{Episode, LearnerState};
+use crate::layout::{EPISODE_TERMINATED, Episode, LearnerState, PHASE_FAILED};
 use crate::run_folder::RecordError;
 use crate::world::World;
 use glam::Vec2;
@@ -245,7 +243,7 @@ fn sums(world: &World, episodes: &[Episode]) -> Vec<RoomSums> {
         let agent = &episode.agent;
         rooms[world.room_of(start).unwrap_or(world.rooms.len())].add(&RoomSums {
             episodes: 1,
-            successes: u32::from(episode.state == STATE_ACHIEVED),
+            successes: u32::from(episode.state == EPISODE_TERMINATED),
             steps: agent.step,
             collisions: agent.collisions,
             reward: f64::from(agent.reward),

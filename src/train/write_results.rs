@@ -10,8 +10,7 @@ use super::run::{Observer, RunError};
 use super::trajectories::trajectories;
 use crate::backend::Backend;
 use crate::config::plan::Plan;
-use crate::layout::{LANES, ROW_WORDS};
-use crate::qnet::forward::net_of;
+use crate::layout::{LANES, TRIAL_WORDS};
 use crate::run_folder::failures::{self, write_failures};
 use crate::run_folder::sweep::{self, write_sweep};
 use crate::run_folder::tables::{EVALUATIONS, EvaluationRow, Names, PLANNER, TRAINED, TRIALS, TableWriter, TrialRow};
@@ -167,7 +166,7 @@ impl Results<'_> {
 
     fn trial_rows(&self, result: &LearnerResult, arm: u32, skills: &[u32]) -> impl Iterator<Item = TrialRow> {
         let (point, seed) = (self.plan.arms[result.id.arm].point, result.id.seed);
-        result.rows.as_chunks::<ROW_WORDS>().0.iter().map(move |row| {
+        result.rows.as_chunks::<TRIAL_WORDS>().0.iter().map(move |row| {
             let [skill, trial, actions, steps, reward, success, collisions, taught] = *row;
             TrialRow {
                 arm,
@@ -256,7 +255,7 @@ impl Results<'_> {
             let mut written = Vec::new();
             for (number, child) in skill.children.iter().enumerate() {
                 let (net, output) = if plan.nets == 1 { (0, number) } else { (number, 0) };
-                let rows = &nets[net_of(plan, 0, net as u32) as usize..].as_chunks::<LANES>().0[..plan.rows as usize];
+                let rows = &nets[plan.net_offset(net as u32)..].as_chunks::<LANES>().0[..plan.rows as usize];
                 written.push(NetWeights {
                     child: arm.name_of(*child).to_owned(),
                     inputs,

@@ -63,14 +63,19 @@ fn step(robots: &mut [Robot], shared: &CohortData, iterations: u32) {
     }
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
 fn instructions() -> &'static str {
-    let target = multiversion::target::selected_target!();
-    if target.supports_feature_str("avx512f") {
-        "AVX-512"
-    } else if target.supports_feature_str("avx2") {
-        "AVX2"
-    } else {
-        "baseline"
+    #[cfg(target_arch = "x86_64")]
+    {
+        if is_x86_feature_detected!("avx512f")
+            && is_x86_feature_detected!("avx512vl")
+            && is_x86_feature_detected!("avx512dq")
+            && is_x86_feature_detected!("avx512bw")
+        {
+            return "AVX-512";
+        }
+        if is_x86_feature_detected!("avx2") {
+            return "AVX2";
+        }
     }
+    "baseline"
 }

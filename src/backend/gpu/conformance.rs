@@ -1,9 +1,9 @@
 //! Is this adapter exact? The shipped functions answer the same questions on the adapter and in Rust, and
 //! the answers are compared as bits.
 
-use super::arithmetic_check::{ANSWER_WORDS, Answer, NAMES, QUESTION_WORDS, Question, SUBNORMAL, probe};
+use super::arithmetic_check::{ANSWER_WORDS, Answer, NAMES, QUESTION_WORDS, Question, SUBNORMAL, arithmetic_check};
 use super::device::Device;
-use super::loop_limit::{self, BOUNDS, canary};
+use super::loop_limit::{self, BOUNDS, loop_limit};
 use super::pipeline::Pipeline;
 use super::source::{LOOP_LIMIT, ARITHMETIC_CHECK};
 use crate::backend::BackendError;
@@ -37,7 +37,7 @@ pub fn examine(device: &Device) -> Result<Verdict, BackendError> {
     let answers = ask(device, &questions)?;
     let mut verdict = compare(&questions, &answers);
     let counts = count_turns(device)?;
-    let expected = canary(BOUNDS);
+    let expected = loop_limit(BOUNDS);
     if counts[2] != expected[2] {
         let message = format!("the driver ends loops after fewer than {} turns", loop_limit::SAFE_TURNS);
         return Err(BackendError::Device { kernel: LOOP_LIMIT.name, message });
@@ -109,7 +109,7 @@ pub fn compare(questions: &[Question], answers: &[Answer]) -> Verdict {
     for (group, (asked, found)) in
         questions.as_chunks::<LANES>().0.iter().zip(answers.as_chunks::<LANES>().0).enumerate()
     {
-        for (lane, (wanted, found)) in probe(asked).iter().zip(found).enumerate() {
+        for (lane, (wanted, found)) in arithmetic_check(asked).iter().zip(found).enumerate() {
             for word in 0..ANSWER_WORDS {
                 if wanted[word] != found[word] {
                     differing[word] += 1;

@@ -2,7 +2,7 @@
 
 use super::{PASSES, Tensor, Words, object};
 use crate::backend::Backend;
-use crate::backend::cpu::CpuBackend;
+use crate::backend::cpu::cpu_backend;
 use crate::bench::replay::{Drill, Nets, encode};
 use crate::bench::workload::{self, DOCKING};
 use crate::bench::{BenchError, same};
@@ -66,7 +66,7 @@ pub(super) fn replay(learners: u32) -> Result<(Vec<Tensor>, Map<String, Value>),
     let once = weights(&nets);
     drill.replay_scalar(&mut nets, PASSES - 1);
     let all = weights(&nets);
-    let mut backend = CpuBackend::new(0, None)?;
+    let mut backend = cpu_backend(0, None)?;
     backend.load(drill.cohort().clone())?;
     Drill::replay(&mut backend)?;
     let ours = weights(&drill.nets(backend.memory()?));

@@ -1,7 +1,7 @@
 //! Tensors of `simulate.safetensors`.
 
 use super::{ROBOTS, STEPS, Tensor, object};
-use crate::backend::cpu::CpuBackend;
+use crate::backend::cpu::cpu_backend;
 use crate::bench::simulate::{StepNoise, Walk};
 use crate::bench::workload::{self, DOCKING};
 use crate::bench::{BenchError, same};
@@ -14,7 +14,7 @@ pub(super) fn simulate() -> Result<(Vec<Tensor>, Map<String, Value>), BenchError
     let plan = workload::plan(DOCKING, &["arms=[\"taught-adam\"]"], 1)?;
     let mut walk = Walk::new(&plan, ROBOTS);
     let mut scalar = walk.clone();
-    let mut backend = CpuBackend::new(0, None)?;
+    let mut backend = cpu_backend(0, None)?;
     let floor = walk.shared.floor.plan;
     let poses =
         |walk: &Walk| walk.robots.iter().flat_map(|robot| [robot.x, robot.y, robot.heading]).collect::<Vec<_>>();
