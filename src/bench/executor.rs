@@ -3,9 +3,7 @@
 use super::BenchError;
 use crate::backend::Backend;
 use crate::backend::cpu::CpuBackend;
-use crate::backend::gpu::adapter::{adapters, choose};
-use crate::backend::gpu::device::is_software;
-use crate::backend::gpu::{GpuBackend, GpuOptions};
+use crate::backend::open::{OpenAdapter, open_adapters};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -102,40 +100,26 @@ pub fn open(choice: Choice) -> Result<(Vec<Executor>, Vec<String>), BenchError> 
     if choice == Choice::Cpu {
         return Ok((executors, left_out));
     }
-    let (_instance, found) = adapters();
-    if found.is_empty() {
-        let reason = choose(None, true).err().map_or_else(String::new, |error| error.to_string());
-        if choice == Choice::Gpu {
-            return Err(choose(None, true).map_or_else(BenchError::from, |_| unavailable()));
+    let found = match open_adapters() {
+        Ok(found) => found,
+        Err(error) if choice == Choice::Gpu => return Err(error.into()),
+        Err(error) => {
+            left_out.push(format!("GPU: {}", error.to_string().lines().next().unwrap_or_default()));
+            Vec::new()
         }
-        left_out.push(format!("GPU: {}", reason.lines().next().unwrap_or_default()));
-    }
-    for (number, adapter) in found.iter().enumerate() {
-        let info = adapter.get_info();
-        match GpuBackend::on(adapter, &GpuOptions::default()) {
-            Err(error) => left_out.push(format!("{}: {error}", info.name)),
-            Ok(gpu) if !gpu.verdict().exact => {
-                let reason = gpu.verdict().reason.clone().unwrap_or_default();
-                left_out.push(format!("{}: its bytes are not the CPU's ({reason})", info.name));
-            }
-            Ok(gpu) => {
-                let software = is_software(&info);
-                let kind = if software { Kind::SoftwareGpu } else { Kind::Gpu };
-                let driver = format!("{} {}", info.driver, info.driver_info);
-                let mut executor =
-                    Executor::of(&format!("gpu-{number}"), kind, if software { threads } else { 1 }, Box::new(gpu));
-                executor.about.device = format!("{}, {}", executor.about.device, driver.trim());
+    };
+    for (number, adapter) in found.into_iter().enumerate() {
+        let OpenAdapter { name, driver, software, inexact, backend } = adapter;
+        match (backend, inexact) {
+            (Err(error), _) => left_out.push(format!("{name}: {error}")),
+            (Ok(_), Some(reason)) => left_out.push(format!("{name}: its bytes are not the CPU's ({reason})")),
+            (Ok(gpu), None) => {
+                let (kind, threads) = if software { (Kind::SoftwareGpu, threads) } else { (Kind::Gpu, 1) };
+                let mut executor = Executor::of(&format!("gpu-{number}"), kind, threads, gpu);
+                executor.about.device = format!("{}, {driver}", executor.about.device);
                 executors.push(executor);
             }
         }
     }
     Ok((executors, left_out))
-}
-
-fn unavailable() -> BenchError {
-    crate::backend::BackendError::Unavailable {
-        message: "the adapters went away".to_owned(),
-        hint: "try again".to_owned(),
-    }
-    .into()
 }

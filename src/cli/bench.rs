@@ -1,7 +1,7 @@
 //! `skilltree bench`: how fast, and how near to this machine's limits.
 
-use super::output::{print, tell};
-use super::{Failure, exit_codes};
+use super::console::{print, tell};
+use super::{CliError, exit_codes};
 use crate::bench::executor::Choice;
 use crate::bench::export::{self, export};
 use crate::bench::run::{Options, run};
@@ -63,7 +63,7 @@ pub(super) struct Arguments {
 ///
 /// # Errors
 /// Where results differ or something cannot be had.
-pub(super) fn bench(arguments: &Arguments) -> Result<(), Failure> {
+pub(super) fn bench(arguments: &Arguments) -> Result<(), CliError> {
     let command = std::env::args().collect::<Vec<_>>().join(" ");
     let note = &mut |text: &str| tell(text);
     if let Some(folder) = &arguments.export {
