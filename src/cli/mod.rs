@@ -46,7 +46,7 @@ enum Command {
     Report(report::Arguments),
     Probe(probe::Arguments),
     Devices(devices::Arguments),
-    Bench(bench::Arguments),
+    Bench(bench::BenchArguments),
 }
 
 /// Carries out what the user typed.
