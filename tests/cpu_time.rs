@@ -1,11 +1,11 @@
 //! The benchmark's clock of CPU time. It counts all threads of the process, hence a process with nothing else in it.
 #![cfg(unix)]
 
-use skilltree::bench::clock::{Span, timed};
+use skilltree::bench::timing::{Elapsed, timed};
 use std::time::Duration;
 
 /// How long it takes `threads` threads to do the same work each.
-fn work(threads: usize) -> Span {
+fn work(threads: usize) -> Elapsed {
     let spin = || {
         let mut state = std::hint::black_box(1_u32);
         for _turn in 0..20_000_000 {

@@ -4,9 +4,11 @@
 //! the same bytes. `cpu` touches no wgpu and runs where no Vulkan is installed.
 
 pub mod cpu;
+#[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod host;
 pub mod memory;
+pub mod open;
 pub mod parity;
 pub mod reference;
 
@@ -145,6 +147,11 @@ pub enum BackendError {
         /// What the user can do.
         hint: String,
     },
+    /// This program was built without what was asked for.
+    #[error(
+        "this build of skilltree has no GPU backend\nhint: use `--backend cpu`, or build with the feature `gpu`, which is on by default"
+    )]
+    NotBuilt,
     /// The cohort does not fit.
     #[error("the device cannot hold {learners} learners: {message}\nhint: use a smaller cohort, `--cohort N`")]
     TooLarge {

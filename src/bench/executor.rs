@@ -1,39 +1,40 @@
-//! Who does the work: the scalar reference, the CPU on one thread and on all, and every exact adapter.
+//! Who does the work: the CPU on one thread and on all, and every exact adapter.
 
 use super::BenchError;
+use super::timing::cores;
 use crate::backend::Backend;
 use crate::backend::cpu::cpu_backend;
-use crate::backend::gpu::adapter::{adapters, choose};
-use crate::backend::gpu::device::is_software;
-use crate::backend::gpu::{GpuBackend, GpuOptions};
+use crate::backend::open::{OpenAdapter, open_adapters};
+use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Which of them to measure.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Choice {
-    /// The scalar reference and the CPU.
+/// Which executors to measure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ExecutorSet {
+    /// The plain twins, and the CPU on one thread and on all.
     Cpu,
-    /// All adapters, and the CPU to compare them with.
+    /// Every exact adapter, and the CPU on one thread.
     Gpu,
     /// Everybody.
     All,
 }
 
-/// One who does work.
+/// A backend with its name in the results.
 pub struct Executor {
     /// What it is, as results tell it.
-    pub about: About,
-    backend: Option<Box<dyn Backend>>,
+    pub info: ExecutorInfo,
+    /// Does the work.
+    pub backend: Box<dyn Backend>,
 }
 
 /// What an executor is.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct About {
-    /// Short name, which rows of results refer to.
+pub struct ExecutorInfo {
+    /// Short name, which rows of results refer to: `reference`, `cpu-1`, `cpu-8`, `gpu-0`.
     pub name: String,
     /// The kind.
-    pub kind: Kind,
+    pub kind: ExecutorKind,
     /// Threads of the CPU that it may use.
     pub threads: usize,
     /// What executes, in words: instruction set, or adapter and driver.
@@ -43,9 +44,9 @@ pub struct About {
 /// Kinds of executors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Kind {
-    /// The scalar reference.
-    Scalar,
+pub enum ExecutorKind {
+    /// The plain twins.
+    Reference,
     /// The CPU backend.
     Cpu,
     /// A graphics card.
@@ -56,86 +57,67 @@ pub enum Kind {
 
 impl fmt::Debug for Executor {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "Executor({:?})", self.about)
+        write!(f, "Executor({:?})", self.info)
     }
 }
 
 impl Executor {
-    /// The scalar reference, on one thread.
-    pub fn scalar() -> Self {
-        let device = "one value at a time, compiled for any CPU of this kind".to_owned();
-        Self { about: About { name: "scalar".to_owned(), kind: Kind::Scalar, threads: 1, device }, backend: None }
-    }
-
-    /// A backend.
-    pub fn of(name: &str, kind: Kind, threads: usize, backend: Box<dyn Backend>) -> Self {
+    /// A backend under a name.
+    pub fn new(name: &str, kind: ExecutorKind, threads: usize, backend: Box<dyn Backend>) -> Self {
         let device = backend.describe();
-        Self { about: About { name: name.to_owned(), kind, threads, device }, backend: Some(backend) }
-    }
-
-    /// The backend, or none for the scalar reference.
-    pub fn backend(&mut self) -> Option<&mut (dyn Backend + 'static)> {
-        self.backend.as_deref_mut()
+        Self { info: ExecutorInfo { name: name.to_owned(), kind, threads, device }, backend }
     }
 
     fn cpu(threads: usize) -> Result<Self, BenchError> {
-        let backend = cpu_backend(threads, None)?;
-        Ok(Self::of(&format!("cpu-{threads}"), Kind::Cpu, threads, Box::new(backend)))
+        let backend = Box::new(cpu_backend(threads, None)?);
+        Ok(Self::new(&format!("cpu-{threads}"), ExecutorKind::Cpu, threads, backend))
+    }
+
+    fn adapter(number: usize, adapter: OpenAdapter) -> Result<Self, String> {
+        let OpenAdapter { name, driver, software, inexact, backend } = adapter;
+        let backend = backend.map_err(|error| format!("{name}: {error}"))?;
+        if let Some(reason) = inexact {
+            return Err(format!("{name}: its bytes are not the CPU's ({reason})"));
+        }
+        let (kind, threads) = if software { (ExecutorKind::SoftwareGpu, cores()) } else { (ExecutorKind::Gpu, 1) };
+        let mut executor = Self::new(&format!("gpu-{number}"), kind, threads, backend);
+        executor.info.device = format!("{}, {driver}", executor.info.device);
+        Ok(executor)
     }
 }
 
-/// Opens the executors. The first one is exact by definition; the second list says who was left out and why.
+/// Opens executors that run on the CPU.
+///
+/// # Errors
+/// Where threads cannot be started.
+pub fn open_cpu() -> Result<Vec<Executor>, BenchError> {
+    let mut executors = vec![Executor::cpu(1)?];
+    if cores() > 1 {
+        executors.push(Executor::cpu(cores())?);
+    }
+    Ok(executors)
+}
+
+/// Opens executors. The first one is right by definition; the second list says who was left out and why.
 ///
 /// # Errors
 /// Where adapters are asked for and there is none.
-pub fn open(choice: Choice) -> Result<(Vec<Executor>, Vec<String>), BenchError> {
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let mut executors = Vec::new();
+pub fn open_executors(which: ExecutorSet) -> Result<(Vec<Executor>, Vec<String>), BenchError> {
+    let mut executors = if which == ExecutorSet::Gpu { vec![Executor::cpu(1)?] } else { open_cpu()? };
     let mut left_out = Vec::new();
-    if choice != Choice::Gpu {
-        executors.push(Executor::scalar());
-    }
-    executors.push(Executor::cpu(1)?);
-    if choice != Choice::Gpu && threads > 1 {
-        executors.push(Executor::cpu(threads)?);
-    }
-    if choice == Choice::Cpu {
-        return Ok((executors, left_out));
-    }
-    let (_instance, found) = adapters();
-    if found.is_empty() {
-        let reason = choose(None, true).err().map_or_else(String::new, |error| error.to_string());
-        if choice == Choice::Gpu {
-            return Err(choose(None, true).map_or_else(BenchError::from, |_| unavailable()));
-        }
-        left_out.push(format!("GPU: {}", reason.lines().next().unwrap_or_default()));
-    }
-    for (number, adapter) in found.iter().enumerate() {
-        let info = adapter.get_info();
-        match GpuBackend::on(adapter, &GpuOptions::default()) {
-            Err(error) => left_out.push(format!("{}: {error}", info.name)),
-            Ok(gpu) if !gpu.verdict().exact => {
-                let reason = gpu.verdict().reason.clone().unwrap_or_default();
-                left_out.push(format!("{}: its bytes are not the CPU's ({reason})", info.name));
+    if which != ExecutorSet::Cpu {
+        match open_adapters() {
+            Ok(adapters) => {
+                for (number, adapter) in adapters.into_iter().enumerate() {
+                    match Executor::adapter(number, adapter) {
+                        Ok(executor) => executors.push(executor),
+                        Err(reason) => left_out.push(reason),
+                    }
+                }
             }
-            Ok(gpu) => {
-                let software = is_software(&info);
-                let kind = if software { Kind::SoftwareGpu } else { Kind::Gpu };
-                let driver = format!("{} {}", info.driver, info.driver_info);
-                let mut executor =
-                    Executor::of(&format!("gpu-{number}"), kind, if software { threads } else { 1 }, Box::new(gpu));
-                executor.about.device = format!("{}, {}", executor.about.device, driver.trim());
-                executors.push(executor);
-            }
+            Err(error) if which == ExecutorSet::Gpu => return Err(error.into()),
+            Err(error) => left_out.push(format!("GPU: {}", error.to_string().lines().next().unwrap_or_default())),
         }
     }
     Ok((executors, left_out))
-}
-
-fn unavailable() -> BenchError {
-    crate::backend::BackendError::Unavailable {
-        message: "the adapters went away".to_owned(),
-        hint: "try again".to_owned(),
-    }
-    .into()
 }

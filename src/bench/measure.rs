@@ -1,151 +1,145 @@
-//! Sample after sample, everything in turn: a control loop, the limits, then every executor with the same work.
+//! Sample after sample, every executor in turn with the same work.
 //!
 //! The first round is not counted: it compiles shaders and fills caches. In every round all bytes are compared.
 
-use super::clock::{Spread, free_cores};
-use super::cost::Cost;
-use super::executor::{Executor, Kind};
-use super::limits::{Limit, Meter};
-use super::result::{LimitRate, Row, Share, TaskReport};
-use super::tasks::{Done, Task};
-use super::{BenchError, same};
+use super::benchmarks::{BenchSizes, Benchmark, Decisions, HierarchyLearners, Measurement, RobotSteps, Training};
+use super::benchmarks::{Transitions, UpdateRule};
+use super::embedded_configs::{HIERARCHY, ONE_POINT, THRESHOLDS};
+use super::executor::{Executor, ExecutorInfo, ExecutorKind, ExecutorSet, open_executors};
+use super::result::{BenchOrigin, BenchReport, FORMAT, RateRow, TaskReport};
+use super::timing::{Spread, cores, free_cores};
+use super::{BenchError, compare};
 
-/// Share of the cores that must be free for a figure on all of them.
-const FREE: f64 = 0.9;
+/// Whole learners that a graphics card trains at a time, unless told otherwise.
+const CARD_LEARNERS: u32 = 1024;
+/// Times that an action is carried out where the host is to be out of the way.
+const REPEATS: u32 = 8;
 
-/// Everything that was measured of some kinds of work.
-#[derive(Debug)]
-pub struct Measured {
-    /// Free cores, of each sample.
-    pub free_cores: Vec<f64>,
-    /// Rates of the limits, of each sample.
-    pub limits: Vec<[f64; Limit::ALL.len()]>,
-    /// The kinds of work.
-    pub tasks: Vec<TaskReport>,
+/// What to measure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BenchOptions {
+    /// On whom.
+    pub executors: ExecutorSet,
+    /// Samples of everything.
+    pub samples: u32,
+    /// Whole learners to train on each executor; 0 for none. As many as the CPU has cores, and a graphics card room,
+    /// if not given.
+    pub learners: Option<u32>,
 }
 
-/// One sample of one executor.
-struct Sample {
-    units: u64,
-    per_second: f64,
-    per_cpu_second: f64,
-    free: bool,
-    limits: [f64; Limit::ALL.len()],
+/// Measures everything. `note` is told what is being measured, `command` is kept in the report.
+///
+/// # Errors
+/// [`BenchError::Differs`] where two executors leave different bytes; else where one fails.
+pub fn bench(options: BenchOptions, command: &str, note: &mut dyn FnMut(&str)) -> Result<BenchReport, BenchError> {
+    let origin = BenchOrigin::new(command);
+    let (mut executors, mut left_out) = open_executors(options.executors)?;
+    let has = |kind| executors.iter().any(|executor| executor.info.kind == kind);
+    let (card, software) = (has(ExecutorKind::Gpu), has(ExecutorKind::SoftwareGpu));
+    let sizes = if card { BenchSizes::CARD } else { BenchSizes::CPU };
+    let on_cpu = options.learners.unwrap_or(cores() as u32);
+    let on_card = options.learners.unwrap_or(if card { CARD_LEARNERS } else { 0 });
+    let most = on_cpu.max(on_card);
+    let hierarchy = HierarchyLearners::new(HIERARCHY, &[], sizes.learners.max(most))?;
+    let lean = if most > 0 { Some(HierarchyLearners::new(THRESHOLDS, &ONE_POINT, most)?) } else { None };
+    let mut benchmarks: Vec<Box<dyn Benchmark + '_>> =
+        vec![Box::new(RobotSteps::new(sizes, 1)?), Box::new(RobotSteps::new(sizes, REPEATS)?)];
+    for rule in UpdateRule::ALL {
+        benchmarks.push(Box::new(Transitions::new(sizes, rule)?));
+    }
+    benchmarks.push(Box::new(Decisions::new(&hierarchy, sizes)));
+    if let Some(lean) = &lean {
+        benchmarks.push(Box::new(Training::new("learners", &hierarchy, on_cpu, on_card)));
+        benchmarks.push(Box::new(Training::new("learners-lean", lean, on_cpu, on_card)));
+        if software {
+            left_out.push("learners on software adapters: they would take too long".to_owned());
+        }
+    }
+    let (mut tasks, mut free) = (Vec::new(), Vec::new());
+    for benchmark in &benchmarks {
+        note(&format!("{}: {}", benchmark.name(), benchmark.about()));
+        tasks.push(measure(benchmark.as_ref(), &mut executors, options.samples, &mut free)?);
+    }
+    Ok(BenchReport {
+        format: FORMAT,
+        origin,
+        samples: options.samples,
+        executors: executors.into_iter().map(|executor| executor.info).collect(),
+        left_out,
+        free_cores: Spread::of(free),
+        tasks,
+    })
 }
 
-impl Measured {
-    /// Nothing yet.
-    pub fn new() -> Self {
-        Self { free_cores: Vec::new(), limits: Vec::new(), tasks: Vec::new() }
-    }
-
-    /// The limits over all samples.
-    pub fn limit_rates(&self) -> Vec<LimitRate> {
-        let rate = |limit: Limit| Spread::of(self.limits.iter().map(|rates| rates[limit as usize]));
-        Limit::ALL.into_iter().filter_map(|limit| Some(LimitRate { limit, rate: rate(limit)? })).collect()
-    }
-
-    /// Measures one kind of work.
-    ///
-    /// # Errors
-    /// [`BenchError::Differs`] where two executors leave different bytes; else where one fails.
-    pub fn add(
-        &mut self,
-        task: &dyn Task,
-        executors: &mut [Executor],
-        meter: &mut Meter,
-        samples: u32,
-    ) -> Result<(), BenchError> {
-        let cores = std::thread::available_parallelism().map_or(1, usize::from);
-        let mut taken: Vec<Vec<Sample>> = executors.iter().map(|_| Vec::new()).collect();
-        for number in 0..=samples {
-            let free = if cores > 1 { free_cores(cores) } else { 1.0 };
-            let mut limits = [0.0; Limit::ALL.len()];
-            for limit in Limit::ALL {
-                limits[limit as usize] = meter.rate(limit)?;
-            }
-            let done = round(task, executors, number)?;
-            if number == 0 {
-                continue;
-            }
-            self.free_cores.push(free.min(cores as f64));
-            self.limits.push(limits);
-            for (taken, done) in taken.iter_mut().zip(done) {
-                taken.extend(done.map(|done| Sample {
-                    units: done.units,
-                    per_second: done.units as f64 / done.span.wall,
-                    per_cpu_second: done.units as f64 / done.span.cpu,
-                    free: free >= FREE * cores as f64,
-                    limits,
-                }));
+/// Measures one kind of work; adds the cores that were free before each sample to `free`.
+///
+/// # Errors
+/// [`BenchError::Differs`] where two executors leave different bytes; else where one fails.
+pub fn measure(
+    benchmark: &dyn Benchmark,
+    executors: &mut [Executor],
+    samples: u32,
+    free: &mut Vec<f64>,
+) -> Result<TaskReport, BenchError> {
+    let mut taken: Vec<Vec<Measurement>> = executors.iter().map(|_| Vec::new()).collect();
+    for number in 0..=samples {
+        let idle = free_cores();
+        let round = round(benchmark, executors, number)?;
+        if number > 0 {
+            free.push(idle);
+            for (taken, measured) in taken.iter_mut().zip(round) {
+                taken.extend(measured);
             }
         }
-        let cost = task.cost();
-        let rows =
-            executors.iter().enumerate().filter_map(|(number, _)| row(number, executors, &taken, cost)).collect();
-        let (name, about) = (task.name().to_owned(), task.about());
-        self.tasks.push(TaskReport { name, about, cost: cost.map(|(cost, ..)| cost), rows });
-        Ok(())
     }
-}
-
-impl Default for Measured {
-    fn default() -> Self {
-        Self::new()
-    }
+    let infos: Vec<&ExecutorInfo> = executors.iter().map(|executor| &executor.info).collect();
+    let rows = (0..infos.len()).filter_map(|own| row(own, &infos, &taken)).collect();
+    Ok(TaskReport { name: benchmark.name().to_owned(), about: benchmark.about(), rows })
 }
 
 /// Every executor does the work of one sample, and all bytes are compared with those of the first.
-fn round(task: &dyn Task, executors: &mut [Executor], sample: u32) -> Result<Vec<Option<Done>>, BenchError> {
-    let mut done: Vec<Option<Done>> = Vec::new();
-    for executor in executors.iter_mut() {
-        done.push(task.run(executor, sample)?);
-    }
-    let mut found = executors.iter().zip(&done).filter_map(|(executor, done)| Some((executor, done.as_ref()?)));
-    if let Some((first, expected)) = found.next() {
-        for (executor, done) in found {
-            let left = (first.about.name.as_str(), &expected.words[..]);
-            same(task.name(), left, (executor.about.name.as_str(), &done.words))?;
+fn round(
+    benchmark: &dyn Benchmark,
+    executors: &mut [Executor],
+    sample: u32,
+) -> Result<Vec<Option<Measurement>>, BenchError> {
+    let (mut measured, mut first) = (Vec::new(), None);
+    for executor in executors {
+        let mut found = benchmark.run(executor, sample)?;
+        if let Some(found) = &mut found {
+            let (name, words) = (executor.info.name.clone(), std::mem::take(&mut found.words));
+            match &first {
+                None => first = Some((name, words)),
+                Some((left, expected)) => compare(benchmark.name(), (left, expected), (&name, &words))?,
+            }
         }
+        measured.push(found);
     }
-    Ok(done)
+    Ok(measured)
 }
 
-fn row(
-    number: usize,
-    executors: &[Executor],
-    taken: &[Vec<Sample>],
-    cost: Option<(Cost, Limit, Option<Limit>)>,
-) -> Option<Row> {
-    let (own, samples) = (&executors[number].about, &taken[number]);
-    let of = |kind: Kind, threads: usize| {
-        let found = executors.iter().position(|other| other.about.kind == kind && other.about.threads == threads)?;
-        (found != number && taken[found].len() == samples.len()).then(|| &taken[found])
+/// What the samples of executor number `own` say, beside those of the others.
+fn row(own: usize, infos: &[&ExecutorInfo], taken: &[Vec<Measurement>]) -> Option<RateRow> {
+    let (info, samples) = (infos[own], &taken[own]);
+    let of = |kind: ExecutorKind| {
+        let found = infos.iter().position(|other| other.kind == kind && other.threads == 1)?;
+        (found != own && taken[found].len() == samples.len()).then(|| &taken[found])
     };
+    let per_second = |sample: &Measurement| sample.units as f64 / sample.elapsed.wall;
+    let per_cpu_second = |sample: &Measurement| sample.units as f64 / sample.elapsed.cpu;
     // A graphics card takes no CPU-seconds.
-    let rate = |sample: &Sample| if own.kind == Kind::Gpu { sample.per_second } else { sample.per_cpu_second };
-    let over_scalar = of(Kind::Scalar, 1)
-        .and_then(|scalar| Spread::of(samples.iter().zip(scalar).map(|(own, scalar)| rate(own) / rate(scalar))));
-    let over_one_thread = of(Kind::Cpu, 1).filter(|_| own.kind == Kind::Cpu).and_then(|one| {
-        let free = samples.iter().zip(one).filter(|(own, _)| own.free);
-        Spread::of(free.map(|(own, one)| own.per_second / one.per_second))
-    });
-    let share = |limit: Limit, amount: f64| {
-        let shares = samples.iter().map(|own| own.per_cpu_second * amount / own.limits[limit as usize]);
-        Some(Share { limit, share: Spread::of(shares)? })
+    let rate =
+        |sample: &Measurement| if info.kind == ExecutorKind::Gpu { per_second(sample) } else { per_cpu_second(sample) };
+    let over = |others: &Vec<Measurement>, rate: &dyn Fn(&Measurement) -> f64| {
+        Spread::of(samples.iter().zip(others).map(|(own, other)| rate(own) / rate(other)))
     };
-    let mut shares = Vec::new();
-    if let (Some((cost, arithmetic, traffic)), Kind::Scalar | Kind::Cpu) = (cost, own.kind) {
-        shares.extend(share(arithmetic, cost.lane_operations));
-        shares.extend(traffic.and_then(|traffic| share(traffic, cost.bytes)));
-    }
-    Some(Row {
-        executor: own.name.clone(),
+    let one_thread = of(ExecutorKind::Cpu).filter(|_| info.kind == ExecutorKind::Cpu);
+    Some(RateRow {
+        executor: info.name.clone(),
         units: samples.first()?.units,
-        per_second: Spread::of(samples.iter().map(|own| own.per_second))?,
-        per_cpu_second: Spread::of(samples.iter().map(|own| own.per_cpu_second))?,
-        over_scalar,
-        over_one_thread,
-        shares,
+        per_second: Spread::of(samples.iter().map(per_second))?,
+        per_cpu_second: Spread::of(samples.iter().map(per_cpu_second))?,
+        over_reference: of(ExecutorKind::Reference).and_then(|reference| over(reference, &rate)),
+        over_one_thread: one_thread.and_then(|one| over(one, &per_second)),
     })
 }

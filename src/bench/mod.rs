@@ -1,26 +1,20 @@
-//! How fast is this machine, and how near to its limits? `skilltree bench`.
+//! How fast is this machine? `skilltree bench`.
 //!
-//! Every kind of work ([`tasks`]) is done by all who can do it ([`executor`]), in turn with a control loop and with the
-//! [`limits`] of one core, and in every round their bytes are compared: no figure is told of what is wrong
-//! ([`measure`]). [`cost`] counts what a unit of work needs, so that a rate becomes a share of a limit.
-//! [`simulate`] and [`replay`] hold the work and a scalar reference, which does the same without lanes; [`export`]
-//! writes the same work for programs in other languages.
+//! Every benchmark ([`benchmarks`]) is done by every [`executor`] that can do it, in turn, and in every round their bytes
+//! are compared: no rate is told of a wrong result ([`measure`]). [`export`] writes the same work for programs in other
+//! languages, [`scaling`] asks what a learner costs among few and among thousands.
 
-pub mod archive;
-pub mod clock;
-pub mod cost;
+pub mod benchmarks;
+pub mod embedded_configs;
 pub mod executor;
 pub mod export;
-pub mod limits;
 pub mod measure;
-pub mod replay;
 pub mod result;
-pub mod run;
+pub mod robot_walk;
 pub mod scaling;
-pub mod simulate;
-pub mod tasks;
+pub mod taught_replay;
 pub mod text;
-pub mod workload;
+pub mod timing;
 
 use crate::backend::BackendError;
 use crate::config::ConfigError;
@@ -28,12 +22,12 @@ use crate::train::batch_group::SetupError;
 use crate::train::train_loop::Halt;
 use std::path::{Path, PathBuf};
 
-/// Why a benchmark cannot be run, or its figures would mean nothing.
+/// Why a benchmark cannot be run, or its rates would mean nothing.
 #[derive(Debug, thiserror::Error)]
 pub enum BenchError {
     /// Two executors leave different bytes of the same work.
     #[error(
-        "{work}: {left} and {right} differ: {what}\nhint: no figure means anything; `skilltree devices --parity` tells more"
+        "{work}: {left} and {right} differ: {what}\nhint: no rate means anything; `skilltree devices --parity` tells more"
     )]
     Differs {
         /// Which work.
@@ -45,7 +39,7 @@ pub enum BenchError {
         /// Where they differ first.
         what: String,
     },
-    /// A file cannot be written or read.
+    /// A file cannot be written.
     #[error("{}: {source}\nhint: name another place, or free some space", path.display())]
     File {
         /// Which file or folder.
@@ -70,16 +64,16 @@ pub enum BenchError {
     /// A backend cannot be had, or failed.
     #[error(transparent)]
     Backend(#[from] BackendError),
-    /// A cohort has not come to its end.
+    /// Learners have not come to their end.
     #[error(transparent)]
     Halt(#[from] Halt),
 }
 
-/// Compares two executors' words of the same work.
+/// Compares what two executors left of the same work, 32-bit words each.
 ///
 /// # Errors
 /// [`BenchError::Differs`] names the first word that differs.
-pub fn same(work: &'static str, (left, a): (&str, &[u32]), (right, b): (&str, &[u32])) -> Result<(), BenchError> {
+pub fn compare(work: &'static str, (left, a): (&str, &[u32]), (right, b): (&str, &[u32])) -> Result<(), BenchError> {
     let differs = |what: String| BenchError::Differs { work, left: left.to_owned(), right: right.to_owned(), what };
     if a.len() != b.len() {
         return Err(differs(format!("{} words against {}", a.len(), b.len())));
@@ -90,7 +84,12 @@ pub fn same(work: &'static str, (left, a): (&str, &[u32]), (right, b): (&str, &[
     }
 }
 
+/// Makes a folder if it is not there.
+fn make_folder(path: &Path) -> Result<(), BenchError> {
+    std::fs::create_dir_all(path).map_err(|source| BenchError::File { path: path.to_owned(), source })
+}
+
 /// Writes a file.
-fn put(path: &Path, bytes: &[u8]) -> Result<(), BenchError> {
+fn write_file(path: &Path, bytes: &[u8]) -> Result<(), BenchError> {
     std::fs::write(path, bytes).map_err(|source| BenchError::File { path: path.to_owned(), source })
 }

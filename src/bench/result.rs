@@ -1,43 +1,42 @@
-//! What `skilltree bench --json` prints and `--record` keeps: one [`Report`], as JSON.
+//! What `skilltree bench --json` prints and `--record` keeps: one [`BenchReport`], as JSON.
 //!
-//! All rates are per second; a [`Spread`] has `median` and the quartiles `low` and `high` of the samples. Names of kinds,
-//! limits and executors are lower-case words with `-` between. Fields are added, never changed in meaning, as long as
-//! `format` stays.
+//! All rates are per second; a [`Spread`] has `median` and the quartiles `low` and `high` of the samples. Names are
+//! lower-case words with `-` between. Fields are added, never changed in meaning, as long as `format` stays.
 
-use super::clock::Spread;
-use super::cost::Cost;
-use super::executor::About;
-use super::limits::Limit;
+use super::executor::ExecutorInfo;
+use super::timing::{Spread, cores};
+use super::{BenchError, make_folder, write_file};
 use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 /// Version of the JSON's layout.
-pub const FORMAT: u32 = 1;
+pub const FORMAT: u32 = 2;
+/// Where results are kept, below the working directory.
+pub const FOLDER: &str = "benches/runs";
 
 /// Everything that one call of the benchmark found.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Report {
+pub struct BenchReport {
     /// [`FORMAT`].
     pub format: u32,
     /// Who measured what, where and when.
-    pub origin: Origin,
+    pub origin: BenchOrigin,
     /// Samples of everything, taken in turn.
     pub samples: u32,
     /// Who did the work.
-    pub executors: Vec<About>,
+    pub executors: Vec<ExecutorInfo>,
     /// Who was left out, or what, and why.
     pub left_out: Vec<String>,
-    /// Cores that were free for this process, by a control loop on all of them before each sample; at most the number
-    /// of cores. Nothing on a machine with one core.
+    /// Cores that were free for this process, by a control loop on all of them before each sample.
     pub free_cores: Option<Spread>,
-    /// Limits of one core, measured in the same rounds as the work.
-    pub limits: Vec<LimitRate>,
     /// The kinds of work.
     pub tasks: Vec<TaskReport>,
 }
 
 /// Circumstances of a measurement.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Origin {
+pub struct BenchOrigin {
     /// Version of skilltree.
     pub version: String,
     /// Git commit, if known.
@@ -54,15 +53,6 @@ pub struct Origin {
     pub system: String,
 }
 
-/// A limit and its rate.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct LimitRate {
-    /// Which.
-    pub limit: Limit,
-    /// Lane-operations or bytes per CPU-second of one thread.
-    pub rate: Spread,
-}
-
 /// One kind of work.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TaskReport {
@@ -70,15 +60,13 @@ pub struct TaskReport {
     pub name: String,
     /// What a unit is.
     pub about: String,
-    /// What a unit costs, if that is counted; see [`super::cost`].
-    pub cost: Option<Cost>,
     /// One row per executor that did it. All left the same bytes.
-    pub rows: Vec<Row>,
+    pub rows: Vec<RateRow>,
 }
 
 /// How fast one executor does one kind of work.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Row {
+pub struct RateRow {
     /// Name of the executor.
     pub executor: String,
     /// Units of one sample.
@@ -87,20 +75,53 @@ pub struct Row {
     pub per_second: Spread,
     /// Units per CPU-second of this process.
     pub per_cpu_second: Spread,
-    /// Rate per CPU-second over that of the scalar reference, sample by sample; of a graphics card, rate per second.
-    pub over_scalar: Option<Spread>,
-    /// On several threads: rate per second over that on one, of the samples in which the cores were free.
+    /// Rate per CPU-second over that of the reference, sample by sample; of a graphics card, rate per second.
+    pub over_reference: Option<Spread>,
+    /// Of the CPU on several threads: rate per second over that on one.
     pub over_one_thread: Option<Spread>,
-    /// Shares of limits, of executors on the CPU.
-    pub shares: Vec<Share>,
 }
 
-/// Share of a limit that a row reaches: cost of a unit times units per CPU-second, over the limit's rate in the same
-/// round.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Share {
-    /// Which limit.
-    pub limit: Limit,
-    /// The share, 0 to 1.
-    pub share: Spread,
+impl BenchOrigin {
+    /// Here and now, by this command.
+    pub fn new(command: &str) -> Self {
+        let cpu = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+        let model = cpu.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));
+        Self {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            commit: option_env!("SKILLTREE_COMMIT").map(str::to_owned),
+            command: command.to_owned(),
+            started: humantime::format_rfc3339_seconds(SystemTime::now()).to_string(),
+            cpu: model.map_or_else(|| "unknown CPU".to_owned(), |(_, name)| name.trim().to_owned()),
+            cores: cores(),
+            system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
+        }
+    }
+}
+
+impl BenchReport {
+    /// As JSON, ending with a line feed.
+    pub fn json(&self) -> String {
+        serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
+    }
+
+    /// Writes it into `folder` as `DATE-MACHINE.json`, with a number where that is taken, and hands back the path.
+    ///
+    /// # Errors
+    /// Where the folder or the file cannot be written.
+    pub fn record(&self, folder: &Path) -> Result<PathBuf, BenchError> {
+        make_folder(folder)?;
+        let day = self.origin.started.split('T').next().unwrap_or_default();
+        let words = format!("{day} {} {} cores", self.origin.cpu, self.origin.cores).to_lowercase();
+        let words: Vec<&str> =
+            words.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty()).collect();
+        let mut path = folder.join(words.join("-") + ".json");
+        for number in 2.. {
+            if !path.exists() {
+                break;
+            }
+            path = folder.join(format!("{}-{number}.json", words.join("-")));
+        }
+        write_file(&path, self.json().as_bytes())?;
+        Ok(path)
+    }
 }

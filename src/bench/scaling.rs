@@ -1,16 +1,14 @@
 //! Does a learner among thousands cost what it costs among few? One small experiment with more and more learners.
 
 use super::BenchError;
-use super::clock::{Spread, timed};
-use super::result::Origin;
-use super::run::origin;
-use super::workload::{self, DOCKING};
+use super::embedded_configs::{DOCKING, embedded_plan};
+use super::result::BenchOrigin;
+use super::timing::{Elapsed, Spread, cores, timed};
 use crate::backend::cpu::cpu_backend;
 use crate::train::batch::train;
-use crate::train::batch_group::groups;
+use crate::train::batch_group::{LearnerId, groups};
 use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;
-use std::time::SystemTime;
 
 /// Numbers of learners.
 pub const COUNTS: [u32; 5] = [64, 256, 1024, 4096, 16_384];
@@ -18,11 +16,24 @@ pub const COUNTS: [u32; 5] = [64, 256, 1024, 4096, 16_384];
 /// Seeds that the learners take in turn, so that every number of learners has the same mix of work.
 const SEEDS: u32 = 64;
 
+/// Learners of some milliseconds each: whole ones take seconds, of which making their memory is nothing.
+const SET: [&str; 9] = [
+    "arms=[\"taught-adam\"]",
+    "teacher.bank=16",
+    "teacher.episodes=1",
+    "evaluate.at=[0]",
+    "evaluate.episodes=2",
+    "skill.dock.trials=16",
+    "learning.taught_passes=1",
+    "learning.replays=4",
+    "learning.memory=4",
+];
+
 /// Cost per learner at several numbers of learners.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Scaling {
+pub struct ScalingReport {
     /// Who measured what, where and when.
-    pub origin: Origin,
+    pub origin: BenchOrigin,
     /// Threads of the CPU backend.
     pub threads: usize,
     /// One row per number of learners.
@@ -47,34 +58,25 @@ pub struct ScalingRow {
 ///
 /// # Errors
 /// Where the CPU backend cannot be had.
-pub fn scaling(counts: &[u32], samples: u32, command: &str, note: &mut dyn FnMut(&str)) -> Result<Scaling, BenchError> {
-    let started = humantime::format_rfc3339_seconds(SystemTime::now()).to_string();
-    let set = [
-        "arms=[\"taught-adam\"]",
-        "teacher.bank=16",
-        "teacher.episodes=1",
-        "evaluate.at=[0]",
-        "evaluate.episodes=2",
-        // Some milliseconds each: whole learners take seconds, of which making their memory is nothing.
-        "skill.dock.trials=16",
-        "learning.taught_passes=1",
-        "learning.replays=4",
-        "learning.memory=4",
-    ];
-    let plan = workload::plan(DOCKING, &set, SEEDS)?;
+pub fn scaling(
+    counts: &[u32],
+    samples: u32,
+    command: &str,
+    note: &mut dyn FnMut(&str),
+) -> Result<ScalingReport, BenchError> {
+    let origin = BenchOrigin::new(command);
+    let plan = embedded_plan(DOCKING, &SET, SEEDS)?;
     let group = groups(&plan)?.swap_remove(0);
     let seeds = group.learners(&plan);
-    let ids = |count: u32| seeds.iter().copied().cycle().take(count as usize).collect::<Vec<_>>();
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let mut backend = cpu_backend(threads, None)?;
-    let mut spans: Vec<Vec<(f64, f64)>> = counts.iter().map(|_| Vec::new()).collect();
+    let mut backend = cpu_backend(cores(), None)?;
+    let mut taken: Vec<Vec<Elapsed>> = counts.iter().map(|_| Vec::new()).collect();
     // The first round touches all memory for the first time.
     for sample in 0..=samples {
-        for (count, spans) in counts.iter().zip(&mut spans) {
+        for (count, taken) in counts.iter().zip(&mut taken) {
             note(&format!("sample {sample} of {samples}: {count} learners"));
             let repeats = (1024 / count).max(1);
-            let ids = ids(*count);
-            let (_, span) = timed(|| {
+            let ids: Vec<LearnerId> = seeds.iter().copied().cycle().take(*count as usize).collect();
+            let (_, elapsed) = timed(|| {
                 for _repeat in 0..repeats {
                     train(&plan, &group, &ids, &|_| None, None, &mut backend, &mut ())?;
                 }
@@ -82,34 +84,29 @@ pub fn scaling(counts: &[u32], samples: u32, command: &str, note: &mut dyn FnMut
             })?;
             let learners = f64::from(count * repeats);
             if sample > 0 {
-                spans.push((span.cpu / learners, span.wall / learners));
+                taken.push(Elapsed { wall: elapsed.wall / learners, cpu: elapsed.cpu / learners });
             }
         }
     }
-    let rows = counts.iter().zip(&spans).filter_map(|(learners, spans)| {
-        Some(ScalingRow {
-            learners: *learners,
-            cpu_seconds: Spread::of(spans.iter().map(|(cpu, _)| *cpu))?,
-            seconds: Spread::of(spans.iter().map(|(_, wall)| *wall))?,
-        })
+    let rows = counts.iter().zip(&taken).filter_map(|(learners, taken)| {
+        let cpu_seconds = Spread::of(taken.iter().map(|each| each.cpu))?;
+        Some(ScalingRow { learners: *learners, cpu_seconds, seconds: Spread::of(taken.iter().map(|each| each.wall))? })
     });
     let rows: Vec<ScalingRow> = rows.collect();
     let costs = || rows.iter().map(|row| row.cpu_seconds.median);
     let greatest_over_least = costs().fold(0.0, f64::max) / costs().fold(f64::INFINITY, f64::min);
-    Ok(Scaling { origin: origin(command, started), threads, rows, greatest_over_least })
+    Ok(ScalingReport { origin, threads: cores(), rows, greatest_over_least })
 }
 
-/// What people read.
-pub fn text(scaling: &Scaling) -> String {
-    let mut out = format!("{}, {} threads; medians, quartiles in brackets\n", scaling.origin.cpu, scaling.threads);
-    for row in &scaling.rows {
-        let of = |spread: &Spread| {
-            let figure = |seconds: f64| format!("{:.3}", 1.0e3 * seconds);
-            format!("{} [{}, {}]", figure(spread.median), figure(spread.low), figure(spread.high))
-        };
-        let (cpu, wall) = (of(&row.cpu_seconds), of(&row.seconds));
-        let _ = writeln!(out, "  {:>6} learners: {cpu:>24} CPU-ms each, {wall:>24} ms each", row.learners);
+impl ScalingReport {
+    /// What people read.
+    pub fn text(&self) -> String {
+        let mut out = format!("{}, {} threads; medians, quartiles in brackets\n", self.origin.cpu, self.threads);
+        for ScalingRow { learners, cpu_seconds, seconds } in &self.rows {
+            let (cpu, wall) = (cpu_seconds.text(1.0e3, 3), seconds.text(1.0e3, 3));
+            let _ = writeln!(out, "  {learners:>6} learners: {cpu:>24} CPU-ms each, {wall:>24} ms each");
+        }
+        let _ = writeln!(out, "greatest cost over least: {:.3}", self.greatest_over_least);
+        out
     }
-    let _ = writeln!(out, "greatest cost over least: {:.3}", scaling.greatest_over_least);
-    out
 }

@@ -1,28 +1,16 @@
-//! `skilltree bench`: how fast, and how near to this machine's limits.
+//! `skilltree bench`: how fast this machine is.
 
-use super::output::{print, tell};
-use super::{Failure, exit_codes};
-use crate::bench::executor::Choice;
+use super::console::{print, tell};
+use super::{CliError, exit_codes};
+use crate::bench::executor::ExecutorSet;
 use crate::bench::export::{self, export};
-use crate::bench::run::{Options, run};
+use crate::bench::measure::{BenchOptions, bench as run_bench};
 use crate::bench::scaling::{COUNTS, scaling};
-use crate::bench::{archive, scaling as scales, text};
-use clap::ValueEnum;
+use crate::bench::{result, text};
 use std::path::{Path, PathBuf};
 
-/// Who is measured.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Where {
-    /// The scalar reference, and the CPU on one thread and on all.
-    Cpu,
-    /// Every exact adapter, and the CPU on one thread.
-    Gpu,
-    /// Everybody.
-    All,
-}
-
-/// Measures robot-steps, decisions, replayed transitions and whole learners on every backend, beside the limits of this
-/// machine. Whatever two of them do must leave the same bytes, or nothing is told.
+/// Measures robot-steps, decisions, replayed transitions and whole learners on every backend. Whatever two of them do
+/// must leave the same bytes, or nothing is told.
 #[derive(Debug, clap::Args)]
 #[command(after_help = concat!(
     "Examples:\n",
@@ -34,10 +22,10 @@ enum Where {
     "Whole learners take the most time: `--learners 0` leaves them out.\n\n",
     exit_codes!()
 ))]
-pub(super) struct Arguments {
+pub(super) struct BenchArguments {
     /// Who is measured.
     #[arg(long, value_enum, default_value = "all", value_name = "WHERE")]
-    backend: Where,
+    backend: ExecutorSet,
     /// Samples of everything, taken in turn; medians and quartiles are told.
     #[arg(long, default_value_t = 7, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     samples: u32,
@@ -63,30 +51,24 @@ pub(super) struct Arguments {
 ///
 /// # Errors
 /// Where results differ or something cannot be had.
-pub(super) fn bench(arguments: &Arguments) -> Result<(), Failure> {
+pub(super) fn bench(arguments: &BenchArguments) -> Result<(), CliError> {
     let command = std::env::args().collect::<Vec<_>>().join(" ");
     let note = &mut |text: &str| tell(text);
     if let Some(folder) = &arguments.export {
-        let learners = arguments.learners.unwrap_or(export::LEARNERS).max(1);
-        export(folder, learners)?;
+        export(folder, arguments.learners.unwrap_or(export::LEARNERS).max(1))?;
         tell(&format!("written: {}", folder.display()));
         return Ok(());
     }
     if arguments.scaling {
-        let found = scaling(&COUNTS, arguments.samples, &command, note)?;
-        let json = || serde_json::to_string_pretty(&found).unwrap_or_default() + "\n";
-        return print(&if arguments.json { json() } else { scales::text(&found) });
+        let report = scaling(&COUNTS, arguments.samples, &command, note)?;
+        let json = || serde_json::to_string_pretty(&report).unwrap_or_default() + "\n";
+        return print(&if arguments.json { json() } else { report.text() });
     }
-    let choice = match arguments.backend {
-        Where::Cpu => Choice::Cpu,
-        Where::Gpu => Choice::Gpu,
-        Where::All => Choice::All,
-    };
-    let options = Options { choice, samples: arguments.samples, learners: arguments.learners, size: None };
-    let report = run(options, &command, note)?;
+    let options =
+        BenchOptions { executors: arguments.backend, samples: arguments.samples, learners: arguments.learners };
+    let report = run_bench(options, &command, note)?;
     if arguments.record {
-        let path = archive::keep(&report, Path::new(archive::FOLDER))?;
-        tell(&format!("kept: {}", path.display()));
+        tell(&format!("kept: {}", report.record(Path::new(result::FOLDER))?.display()));
     }
-    print(&if arguments.json { archive::json(&report)? } else { text::text(&report) })
+    print(&if arguments.json { report.json() } else { text::text(&report) })
 }

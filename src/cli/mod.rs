@@ -2,19 +2,19 @@
 
 mod backend;
 mod bench;
+mod console;
 mod devices;
-mod failure;
-mod output;
+mod error;
 mod parity;
-mod plan;
+mod preview;
 mod probe;
 mod progress;
 mod report;
 mod run;
 mod signals;
 
-pub use failure::Failure;
-pub use output::tell;
+pub use console::tell;
+pub use error::CliError;
 
 use clap::{Parser, Subcommand};
 
@@ -46,14 +46,14 @@ enum Command {
     Report(report::Arguments),
     Probe(probe::Arguments),
     Devices(devices::Arguments),
-    Bench(bench::Arguments),
+    Bench(bench::BenchArguments),
 }
 
 /// Carries out what the user typed.
 ///
 /// # Errors
-/// [`Failure`] holds the message for the user and the exit code.
-pub fn run(cli: Cli) -> Result<(), Failure> {
+/// [`CliError`] holds the message for the user and the exit code.
+pub fn run(cli: Cli) -> Result<(), CliError> {
     match cli.command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Report(arguments) => report::report(&arguments),

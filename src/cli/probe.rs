@@ -1,7 +1,7 @@
 //! `skilltree probe`: one robot under given actions, and all that it senses.
 
-use super::output::print;
-use super::{Failure, exit_codes};
+use super::console::print;
+use super::{CliError, exit_codes};
 use crate::backend::Backend;
 use crate::backend::cpu::cpu_backend;
 use crate::config::plan::Action;
@@ -72,7 +72,7 @@ struct Reading {
     docked: bool,
 }
 
-pub(super) fn probe(arguments: &Arguments) -> Result<(), Failure> {
+pub(super) fn probe(arguments: &Arguments) -> Result<(), CliError> {
     let plan = load(&arguments.config, &Overrides { set: arguments.set.clone(), ..Overrides::default() })?;
     let pose = pose_of(&arguments.at, plan.world())?;
     let actions = actions_of(&arguments.actions)?;
@@ -88,7 +88,7 @@ pub(super) fn probe(arguments: &Arguments) -> Result<(), Failure> {
         backend.step(&shared, std::slice::from_mut(&mut robot), 1)?;
         let reading = reading_of(&robot, plan.world());
         if arguments.json {
-            let line = serde_json::to_string(&reading).map_err(|error| Failure::Usage {
+            let line = serde_json::to_string(&reading).map_err(|error| CliError::Usage {
                 message: format!("the reading has no JSON form: {error}"),
                 hint: "this is a bug in skilltree: please report it".to_owned(),
             })?;
@@ -143,12 +143,12 @@ fn text_of(action: Option<Action>, reading: &Reading) -> String {
     )
 }
 
-fn usage(message: String, hint: &str) -> Failure {
-    Failure::Usage { message, hint: hint.to_owned() }
+fn usage(message: String, hint: &str) -> CliError {
+    CliError::Usage { message, hint: hint.to_owned() }
 }
 
 /// A pose or the name of a place, checked to be free.
-fn pose_of(text: &str, world: &World) -> Result<Pose, Failure> {
+fn pose_of(text: &str, world: &World) -> Result<Pose, CliError> {
     if let Some((_, pose)) = world.places.iter().find(|(name, _)| name == text) {
         return Ok(*pose);
     }
@@ -175,7 +175,7 @@ fn pose_of(text: &str, world: &World) -> Result<Pose, Failure> {
     Ok(Pose { x, y, heading: if wrapped < 360.0 { wrapped } else { 0.0 } })
 }
 
-fn actions_of(text: &str) -> Result<Vec<Action>, Failure> {
+fn actions_of(text: &str) -> Result<Vec<Action>, CliError> {
     let names: Vec<&str> = Action::ALL.iter().map(|action| action.name()).collect();
     text.split(',')
         .map(str::trim)

@@ -1,6 +1,6 @@
 //! How a run shows where it is: a bar on a terminal, a line per cohort otherwise.
 
-use super::output::tell;
+use super::console::tell;
 use super::signals::Signals;
 use crate::run_folder::{Failure, RecordError};
 use crate::train::run::Observer;

@@ -1,7 +1,7 @@
 //! `skilltree report`: figures, tables and the page of complete runs.
 
-use super::output::print;
-use super::{Failure, exit_codes};
+use super::console::print;
+use super::{CliError, exit_codes};
 use crate::report;
 use std::path::PathBuf;
 
@@ -19,7 +19,7 @@ pub(super) struct Arguments {
     folders: Vec<PathBuf>,
 }
 
-pub(super) fn report(arguments: &Arguments) -> Result<(), Failure> {
+pub(super) fn report(arguments: &Arguments) -> Result<(), CliError> {
     for folder in &arguments.folders {
         let written = report::write(folder)?;
         print(&report::text(folder)?)?;

@@ -1,10 +1,10 @@
 //! `skilltree run`: trains, evaluates, records, reports.
 
 use super::backend::BackendArguments;
-use super::output::{print, tell};
+use super::console::{print, tell};
 use super::progress::RunProgress;
 use super::signals::Signals;
-use super::{Failure, exit_codes, plan};
+use super::{CliError, exit_codes, preview};
 use crate::config::plan::Plan;
 use crate::config::{Overrides, load};
 use crate::report;
@@ -65,7 +65,7 @@ pub(super) struct Arguments {
     out: Option<PathBuf>,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(super) fn run(arguments: &Arguments) -> Result<(), CliError> {
     let overrides = Overrides {
         set: arguments.set.clone(),
         seeds: arguments.seeds.clone(),
@@ -87,7 +87,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let groups = groups(&plan)?;
     let options =
         Options { cohort: arguments.cohort.map(|cohort| cohort as usize), checkpoint: Some(arguments.checkpoint) };
-    let forecast = plan::show(&plan, &groups, backend.as_mut(), options)?;
+    let forecast = preview::show(&plan, &groups, backend.as_mut(), options)?;
     tell(&format!("folder:   {}", out.display()));
     if arguments.dry_run {
         tell("nothing was run or written (--dry-run)");
@@ -102,7 +102,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let started = Instant::now();
     let trials = trials(&plan);
-    let signals = Signals::listen().map_err(Failure::Signals)?;
+    let signals = Signals::listen().map_err(CliError::Signals)?;
     let mut progress = RunProgress::new(forecast.learners, trials, signals);
     let provenance = Provenance {
         version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -147,7 +147,7 @@ fn trials(plan: &Plan) -> u64 {
 }
 
 /// Makes the report of a complete run and says where everything is.
-fn conclude(out: &Path) -> Result<(), Failure> {
+fn conclude(out: &Path) -> Result<(), CliError> {
     report::write(out)?;
     print(&report::text(out)?)?;
     let lines = [

@@ -1,43 +1,42 @@
 //! Tensors of `replay.safetensors`.
 
-use super::{PASSES, Tensor, Words, object};
-use crate::backend::Backend;
-use crate::backend::cpu::cpu_backend;
-use crate::bench::replay::{Drill, Nets, encode};
-use crate::bench::workload::{self, DOCKING};
-use crate::bench::{BenchError, same};
-use crate::layout::{BASE_WORDS, LANES, LESSON_HEADER};
+use super::{ExportTensor, PASSES, TensorText, object};
+use crate::backend::Cohort;
+use crate::bench::benchmarks::UpdateRule;
+use crate::bench::executor::open_cpu;
+use crate::bench::taught_replay::TaughtReplay;
+use crate::bench::{BenchError, compare};
+use crate::layout::{BASE_WORDS, LANES, LESSON_HEADER, RAYS, SkillShape};
+use crate::policy::features::{GROUP_BUMPERS, GROUP_LIGHT, GROUP_SONAR};
+use crate::qnet::forward::net_of;
 use serde_json::{Map, Value, json};
 
 /// The layers of a net as it begins.
-const INITIAL: [Words; 4] = [
+const INITIAL: [TensorText; 4] = [
     ("initial.hidden.weight", "", "before any replay: weight of each input in each hidden unit"),
     ("initial.hidden.bias", "", "before any replay"),
     ("initial.output.weight", "", "before any replay: weight of each hidden unit"),
     ("initial.output.bias", "", "before any replay"),
 ];
 /// The same after one pass.
-const ONCE: [Words; 4] = [
+const ONCE: [TensorText; 4] = [
     ("once.hidden.weight", "", "after one pass over the lessons"),
     ("once.hidden.bias", "", "after one pass"),
     ("once.output.weight", "", "after one pass"),
     ("once.output.bias", "", "after one pass"),
 ];
 /// The same after all passes.
-const EXPECTED: [Words; 4] = [
+const EXPECTED: [TensorText; 4] = [
     ("expected.hidden.weight", "", "after all passes over the lessons"),
     ("expected.hidden.bias", "", "after all passes"),
     ("expected.output.weight", "", "after all passes"),
     ("expected.output.bias", "", "after all passes"),
 ];
 
-/// What the learners learn from and what becomes of their nets, made by the CPU backend and checked by the reference.
-pub(super) fn replay(learners: u32) -> Result<(Vec<Tensor>, Map<String, Value>), BenchError> {
-    let passes = format!("learning.taught_passes={PASSES}");
-    let set = ["arms=[\"taught-adam\"]", "teacher.episodes=1", "skill.dock.trials=0", &passes];
-    let plan = workload::plan(DOCKING, &set, learners)?;
-    let drill = Drill::new(&plan)?;
-    let (skill, shared, params) = (*drill.skill(), &drill.cohort().shared, *drill.params(0));
+/// What the learners learn from and what becomes of their nets, the same by every executor on the CPU.
+pub(super) fn replay(learners: u32) -> Result<(Vec<ExportTensor>, Map<String, Value>), BenchError> {
+    let replay = TaughtReplay::new(&UpdateRule::ALL[0].plan(learners, PASSES)?)?;
+    let (skill, shared, params) = (*replay.skill(), &replay.cohort.shared, *replay.params(0));
     let (bank, steps, inputs) = (skill.bank_lessons as usize, params.max_steps as usize, skill.inputs as usize);
     let (mut length, mut input) = (vec![0; bank], vec![0.0; bank * steps * inputs]);
     let (mut child, mut reward) = (vec![0; bank * steps], vec![0.0; bank * steps]);
@@ -45,8 +44,8 @@ pub(super) fn replay(learners: u32) -> Result<(Vec<Tensor>, Map<String, Value>),
         let at = skill.bank_offset as usize + lesson * skill.lesson_stride as usize;
         let words = &shared.bank[at..at + skill.lesson_stride as usize];
         length[lesson] = words[0] as i32;
-        for (step, record) in words[LESSON_HEADER..].as_chunks::<BASE_WORDS>().0[..words[0] as usize].iter().enumerate()
-        {
+        let records = &words[LESSON_HEADER..].as_chunks::<BASE_WORDS>().0[..words[0] as usize];
+        for (step, record) in records.iter().enumerate() {
             let row = lesson * steps + step;
             input[row * inputs..(row + 1) * inputs].copy_from_slice(&encode(record, &skill, &shared.tables));
             child[row] = (record[8] & 0xff) as i32;
@@ -55,45 +54,37 @@ pub(super) fn replay(learners: u32) -> Result<(Vec<Tensor>, Map<String, Value>),
     }
     let given: Vec<i32> = (0..learners as usize)
         .flat_map(|learner| (0..params.lessons).map(move |number| (learner, number)))
-        .map(|(learner, number)| drill.lesson_of(learner, number) - skill.bank_offset as usize)
+        .map(|(learner, number)| replay.lesson_offset(learner, number) - skill.bank_offset as usize)
         .map(|word| (word / skill.lesson_stride as usize) as i32)
         .collect();
-
-    let weights = |nets: &[Nets]| nets.iter().flat_map(Nets::weights).collect::<Vec<f32>>();
-    let mut nets = drill.nets(drill.cohort());
-    let initial = weights(&nets);
-    drill.replay_scalar(&mut nets, 1);
-    let once = weights(&nets);
-    drill.replay_scalar(&mut nets, PASSES - 1);
-    let all = weights(&nets);
-    let mut backend = cpu_backend(0, None)?;
-    backend.load(drill.cohort().clone())?;
-    Drill::replay(&mut backend)?;
-    let ours = weights(&drill.nets(backend.memory()?));
-    same("replay", ("cpu", bytemuck::cast_slice(&ours)), ("scalar", bytemuck::cast_slice(&all)))?;
+    let once = TaughtReplay::new(&UpdateRule::ALL[0].plan(learners, 1)?)?;
+    let stages = [(INITIAL, nets(&replay.cohort)), (ONCE, replayed(&once)?), (EXPECTED, replayed(&replay)?)];
 
     let (learners, children) = (learners as usize, skill.children as usize);
     let lessons = params.lessons as usize;
     let mut tensors = vec![
-        Tensor::codes(("lesson.length", "", "steps of each lesson in the bank"), &[bank], &length),
-        Tensor::floats(
+        ExportTensor::codes(("lesson.length", "", "steps of each lesson in the bank"), &[bank], &length),
+        ExportTensor::floats(
             ("lesson.input", "", "encoded observation before each step; 0 beyond the length"),
             &[bank, steps, inputs],
             &input,
         ),
-        Tensor::codes(("lesson.child", "", "which child was taken: the net that learns"), &[bank, steps], &child),
-        Tensor::floats(("lesson.reward", "Q", "reward of the step, divided by 100"), &[bank, steps], &reward),
-        Tensor::codes(("lesson", "", "lessons of each learner, in the order of replay"), &[learners, lessons], &given),
+        ExportTensor::codes(("lesson.child", "", "which child was taken: the net that learns"), &[bank, steps], &child),
+        ExportTensor::floats(("lesson.reward", "Q", "reward of the step, divided by 100"), &[bank, steps], &reward),
+        ExportTensor::codes(
+            ("lesson", "", "lessons of each learner, in the order of replay"),
+            &[learners, lessons],
+            &given,
+        ),
     ];
-    let stages = [(INITIAL, initial), (ONCE, once), (EXPECTED, all)];
-    for (names, weights) in &stages {
-        for (words, (shape, values)) in names.iter().zip(layers(weights, inputs)) {
-            tensors.push(Tensor::floats(*words, &[vec![learners, children], shape].concat(), &values));
+    for (names, nets) in &stages {
+        for (text, (shape, values)) in names.iter().zip(layers(nets, inputs)) {
+            tensors.push(ExportTensor::floats(*text, &[vec![learners, children], shape].concat(), &values));
         }
     }
     let numbers = json!({
         "passes": PASSES,
-        "transitions": drill.transitions(PASSES),
+        "transitions": replay.transitions() * u64::from(PASSES),
         "gamma": params.gamma,
         "lambda": params.lambda,
         "rate": params.rate,
@@ -106,19 +97,63 @@ pub(super) fn replay(learners: u32) -> Result<(Vec<Tensor>, Map<String, Value>),
     Ok((tensors, object(numbers)))
 }
 
+/// The nets after all passes, by every executor on the CPU.
+fn replayed(replay: &TaughtReplay) -> Result<Vec<Net>, BenchError> {
+    let mut first: Option<Cohort> = None;
+    for mut executor in open_cpu()? {
+        executor.backend.load(replay.cohort.clone())?;
+        TaughtReplay::replay(executor.backend.as_mut())?;
+        let found = executor.backend.memory()?;
+        let expected = first.get_or_insert_with(|| found.clone());
+        let words = bytemuck::cast_slice(&found.nets);
+        compare("replay", ("first", bytemuck::cast_slice(&expected.nets)), (&executor.info.name, words))?;
+    }
+    Ok(first.as_ref().map(nets).unwrap_or_default())
+}
+
+/// Weights of one net, as rows of lanes: one row per input, then the hidden units' biases, the output's weights, and the
+/// output's bias in lane 0.
+type Net = Vec<[f32; LANES]>;
+
+/// The nets of all learners, child by child.
+fn nets(cohort: &Cohort) -> Vec<Net> {
+    let skill = &cohort.shared.skills[0];
+    let rows = |words: &[f32], child: u32| {
+        words[net_of(skill, 0, child) as usize..].as_chunks().0[..skill.rows as usize].to_vec()
+    };
+    let learners = cohort.nets.chunks(cohort.nets_stride);
+    learners.flat_map(|words| (0..skill.children).map(move |child| rows(words, child))).collect()
+}
+
 /// One layer of all nets of all learners: the shape of one net's part, and the values.
 type Layer = (Vec<usize>, Vec<f32>);
 
-/// The four layers, from [`Nets::weights`] of all learners.
-fn layers(weights: &[f32], inputs: usize) -> [Layer; 4] {
-    let unit = inputs + 1;
-    let hidden = LANES * unit;
-    let nets = || weights.chunks_exact(hidden + LANES + 1);
-    let units = || nets().flat_map(|net| net[..hidden].chunks_exact(unit));
+/// The four layers of [`nets`], in the order of most programs.
+fn layers(nets: &[Net], inputs: usize) -> [Layer; 4] {
+    let unit_inputs =
+        |net: &Net| (0..LANES * inputs).map(|place| net[place % inputs][place / inputs]).collect::<Vec<_>>();
+    let row = |number: usize| nets.iter().flat_map(|net| net[number]).collect();
     [
-        (vec![LANES, inputs], units().flat_map(|unit| &unit[..inputs]).copied().collect()),
-        (vec![LANES], units().map(|unit| unit[inputs]).collect()),
-        (vec![LANES], nets().flat_map(|net| &net[hidden..hidden + LANES]).copied().collect()),
-        (vec![], nets().map(|net| net[hidden + LANES]).collect()),
+        (vec![LANES, inputs], nets.iter().flat_map(unit_inputs).collect()),
+        (vec![LANES], row(inputs)),
+        (vec![LANES], row(inputs + 1)),
+        (vec![], nets.iter().map(|net| net[inputs + 2][0]).collect()),
     ]
+}
+
+/// Inputs of docking's nets from one recorded step.
+fn encode(record: &[u32], skill: &SkillShape, tables: &[u32]) -> Vec<f32> {
+    let mut x = Vec::with_capacity(skill.inputs as usize);
+    for group in 0..skill.groups as usize {
+        match skill.group_kind[group] {
+            GROUP_SONAR => x.extend((0..RAYS).map(|ray| {
+                let byte = (record[ray / 4] >> (8 * (ray % 4))) & 0xff;
+                f32::from_bits(tables[(skill.group_table[group] + byte) as usize])
+            })),
+            GROUP_LIGHT => x.extend((0..RAYS).map(|ray| ((record[6] >> ray) & 1) as f32)),
+            GROUP_BUMPERS => x.extend((0..4).map(|side| ((record[6] >> (24 + side)) & 1) as f32)),
+            other => unreachable!("docking has no input group {other}"),
+        }
+    }
+    x
 }

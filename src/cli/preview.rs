@@ -1,7 +1,7 @@
 //! What a run is going to do and take, told before it begins.
 
+use super::console::tell;
 use super::count;
-use super::output::tell;
 use crate::backend::{Backend, BackendError};
 use crate::config::plan::{Design, Plan};
 use crate::train::batch_group::Group;

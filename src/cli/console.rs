@@ -1,13 +1,13 @@
 //! Results go to standard output, everything else to standard error; neither ever makes the program panic.
 
-use super::Failure;
+use super::CliError;
 use std::io::{ErrorKind, Write, stderr, stdout};
 
 /// Prints results. A reader that has seen enough, such as `head`, is no error.
-pub(super) fn print(text: &str) -> Result<(), Failure> {
+pub(super) fn print(text: &str) -> Result<(), CliError> {
     let mut out = stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::Output(error)),
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(CliError::Output(error)),
         _ => Ok(()),
     }
 }

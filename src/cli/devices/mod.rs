@@ -1,13 +1,10 @@
 //! `skilltree devices`: every adapter, whether it is exact, and why one is not used.
 
-use super::output::print;
-use super::{Failure, exit_codes, parity};
-use crate::backend::gpu::adapter::adapters;
-use crate::backend::gpu::arithmetic_check::ANSWER_WORDS;
-use crate::backend::gpu::conformance::{QUESTIONS, Verdict, examine};
-use crate::backend::gpu::device::{Device, is_software, takes_spirv};
-use crate::backend::gpu::loop_limit::SAFE_TURNS;
-use crate::backend::gpu::{GpuOptions, adapter};
+#[cfg(feature = "gpu")]
+mod examine;
+
+use super::console::print;
+use super::{CliError, exit_codes, parity};
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -36,15 +33,15 @@ pub(super) struct Arguments {
 
 /// What is known of all adapters.
 #[derive(Debug, Serialize)]
-struct Listing {
-    adapters: Vec<Entry>,
+struct DeviceList {
+    adapters: Vec<AdapterReport>,
     /// Why there is none.
     none: Option<String>,
 }
 
 /// What is known of one adapter.
 #[derive(Debug, Serialize)]
-struct Entry {
+struct AdapterReport {
     name: String,
     backend: String,
     driver: String,
@@ -55,6 +52,9 @@ struct Entry {
     max_storage_buffers: u32,
     takes_spirv: bool,
     exact: bool,
+    /// Functions and shapes of which each answer was compared.
+    #[serde(skip)]
+    compared: String,
     /// The first difference, or what failed.
     reason: Option<String>,
     subnormals_kept: Option<bool>,
@@ -65,11 +65,14 @@ struct Entry {
 ///
 /// # Errors
 /// Where an adapter is to leave the CPU's bytes and does not. A machine without adapters is not in error.
-pub(super) fn devices(arguments: &Arguments) -> Result<(), Failure> {
+pub(super) fn devices(arguments: &Arguments) -> Result<(), CliError> {
     if let Some(config) = &arguments.parity {
         return parity::check(config, arguments.learners as usize);
     }
-    let listing = listing();
+    #[cfg(feature = "gpu")]
+    let listing = examine::devices();
+    #[cfg(not(feature = "gpu"))]
+    let listing = DeviceList { adapters: Vec::new(), none: Some(crate::backend::BackendError::NotBuilt.to_string()) };
     if arguments.json {
         let text = serde_json::to_string_pretty(&listing).unwrap_or_default();
         print(&(text + "\n"))
@@ -78,53 +81,7 @@ pub(super) fn devices(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-fn listing() -> Listing {
-    let (_instance, found) = adapters();
-    let entries: Vec<Entry> = found.iter().map(entry).collect();
-    let none = if entries.is_empty() {
-        adapter::choose(GpuOptions::default().adapter.as_deref(), true).err().map(|error| error.to_string())
-    } else {
-        None
-    };
-    Listing { adapters: entries, none }
-}
-
-fn entry(adapter: &wgpu::Adapter) -> Entry {
-    let (info, limits) = (adapter.get_info(), adapter.limits());
-    let examined = Device::open(adapter).and_then(|device| examine(&device));
-    let (verdict, failure) = match examined {
-        Ok(verdict) => (Some(verdict), None),
-        Err(error) => (None, error.to_string().lines().next().map(str::to_owned)),
-    };
-    let of = |get: fn(&Verdict) -> Option<String>| verdict.as_ref().and_then(get);
-    Entry {
-        driver: format!("{} {}", info.driver, info.driver_info).trim().to_owned(),
-        backend: info.backend.to_string(),
-        kind: kind(info.device_type).to_owned(),
-        software: is_software(&info),
-        name: info.name,
-        max_buffer_bytes: limits.max_buffer_size,
-        max_binding_bytes: limits.max_storage_buffer_binding_size,
-        max_storage_buffers: limits.max_storage_buffers_per_shader_stage,
-        takes_spirv: takes_spirv(adapter),
-        exact: verdict.as_ref().is_some_and(|verdict| verdict.exact),
-        reason: failure.or_else(|| of(|verdict| verdict.reason.clone())),
-        subnormals_kept: verdict.as_ref().map(|verdict| verdict.subnormals),
-        loop_budget: verdict.as_ref().and_then(|verdict| verdict.loop_budget),
-    }
-}
-
-fn kind(kind: wgpu::DeviceType) -> &'static str {
-    match kind {
-        wgpu::DeviceType::DiscreteGpu => "graphics card",
-        wgpu::DeviceType::IntegratedGpu => "graphics within the CPU",
-        wgpu::DeviceType::VirtualGpu => "virtual graphics card",
-        wgpu::DeviceType::Cpu => "software, on the CPU",
-        wgpu::DeviceType::Other => "of unknown type",
-    }
-}
-
-fn text(listing: &Listing) -> String {
+fn text(listing: &DeviceList) -> String {
     let mut text = String::from("cpu\n  always there; the bytes that every exact adapter gives too\n");
     for entry in &listing.adapters {
         let _ = write!(text, "\n{}\n", entry.name);
@@ -138,11 +95,11 @@ fn text(listing: &Listing) -> String {
     text
 }
 
-fn lines(entry: &Entry) -> Vec<(&'static str, String)> {
+fn lines(entry: &AdapterReport) -> Vec<(&'static str, String)> {
     let mib = |bytes: u64| bytes >> 20;
     let exact = match (&entry.reason, entry.exact) {
         (_, true) => {
-            format!("yes: {} functions and shapes, {QUESTIONS} inputs each, the bits of the CPU", ANSWER_WORDS - 1)
+            format!("yes: {}, the bits of the CPU", entry.compared)
         }
         (Some(reason), _) => format!("no: {reason}"),
         (None, _) => "no".to_owned(),
@@ -155,7 +112,7 @@ fn lines(entry: &Entry) -> Vec<(&'static str, String)> {
         (false, false) => "--backend gpu only: its results are close to the CPU's, but not the same",
     };
     let loops = match entry.loop_budget {
-        Some(budget) => format!("ended by the driver after {budget} turns; dispatches stay below {SAFE_TURNS}"),
+        Some(budget) => format!("ended by the driver after {budget} turns; dispatches stay below that"),
         None => "no limit seen".to_owned(),
     };
     vec![

@@ -10,7 +10,7 @@ use crate::train::run::RunError;
 
 /// An error as the user sees it.
 #[derive(Debug, thiserror::Error)]
-pub enum Failure {
+pub enum CliError {
     /// Wrong usage of the command line: message and hint.
     #[error("{message}\nhint: {hint}")]
     Usage {
@@ -58,11 +58,11 @@ pub enum Failure {
     Report(#[from] ReportError),
 }
 
-impl Failure {
+impl CliError {
     /// Exit code: 2 usage or config, 75 run again, 1 anything else.
     pub fn code(&self) -> u8 {
         match self {
-            Self::Usage { .. } | Self::Config(_) | Self::Setup(_) => 2,
+            Self::Usage { .. } | Self::Config(_) | Self::Setup(_) | Self::Backend(BackendError::NotBuilt) => 2,
             Self::Backend(BackendError::Device { .. }) | Self::Stopped(_) => 75,
             Self::Output(_)
             | Self::Signals(_)
@@ -75,7 +75,7 @@ impl Failure {
     }
 }
 
-impl From<RunError> for Failure {
+impl From<RunError> for CliError {
     fn from(error: RunError) -> Self {
         match error {
             RunError::Record(error) => Self::Record(error),
@@ -85,7 +85,7 @@ impl From<RunError> for Failure {
     }
 }
 
-impl From<BenchError> for Failure {
+impl From<BenchError> for CliError {
     fn from(error: BenchError) -> Self {
         match error {
             BenchError::Backend(error) => Self::Backend(error),

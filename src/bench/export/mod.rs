@@ -9,9 +9,9 @@
 //! Numbers that are no tensors stand in both files' metadata as JSON under the key `skilltree`.
 
 mod replay;
-mod simulate;
+mod robot_steps;
 
-use super::{BenchError, put};
+use super::{BenchError, make_folder, write_file};
 use safetensors::tensor::{Dtype, TensorView};
 use serde_json::{Map, Value};
 use std::collections::HashMap;
@@ -28,10 +28,10 @@ pub const LEARNERS: u32 = 256;
 pub const PASSES: u32 = 30;
 
 /// Name, unit and meaning of a tensor.
-type Words = (&'static str, &'static str, &'static str);
+type TensorText = (&'static str, &'static str, &'static str);
 
 /// One tensor with its line in the README.
-struct Tensor {
+struct ExportTensor {
     name: &'static str,
     dtype: Dtype,
     shape: Vec<usize>,
@@ -40,35 +40,34 @@ struct Tensor {
     bytes: Vec<u8>,
 }
 
-impl Tensor {
-    fn of<T: bytemuck::Pod>((name, unit, meaning): Words, dtype: Dtype, shape: &[usize], values: &[T]) -> Self {
+impl ExportTensor {
+    fn new<T: bytemuck::Pod>((name, unit, meaning): TensorText, dtype: Dtype, shape: &[usize], values: &[T]) -> Self {
         Self { name, dtype, shape: shape.to_vec(), unit, meaning, bytes: bytemuck::cast_slice(values).to_vec() }
     }
 
-    fn floats(words: Words, shape: &[usize], values: &[f32]) -> Self {
-        Self::of(words, Dtype::F32, shape, values)
+    fn floats(words: TensorText, shape: &[usize], values: &[f32]) -> Self {
+        Self::new(words, Dtype::F32, shape, values)
     }
 
-    fn codes(words: Words, shape: &[usize], values: &[i32]) -> Self {
-        Self::of(words, Dtype::I32, shape, values)
+    fn codes(words: TensorText, shape: &[usize], values: &[i32]) -> Self {
+        Self::new(words, Dtype::I32, shape, values)
     }
 }
 
 /// Writes the files into `folder`, which is made if it is not there.
 ///
 /// # Errors
-/// Where a file cannot be written, or the CPU backend leaves other bytes than the scalar reference.
+/// Where a file cannot be written, or two executors leave different bytes.
 pub fn export(folder: &Path, learners: u32) -> Result<(), BenchError> {
-    let failed = |source| BenchError::File { path: folder.to_owned(), source };
-    std::fs::create_dir_all(folder).map_err(failed)?;
-    let (walk, numbers) = simulate::simulate()?;
+    make_folder(folder)?;
+    let (walk, numbers) = robot_steps::robot_steps()?;
     write(&folder.join("simulate.safetensors"), &walk, &numbers)?;
     let (replay, params) = replay::replay(learners)?;
     write(&folder.join("replay.safetensors"), &replay, &params)?;
-    let readme = include_str!("export/README.md")
+    let readme = include_str!("README.md")
         .replace("{simulate}", &table(&walk, &numbers))
         .replace("{replay}", &table(&replay, &params));
-    put(&folder.join("README.md"), readme.as_bytes())
+    write_file(&folder.join("README.md"), readme.as_bytes())
 }
 
 fn object(value: Value) -> Map<String, Value> {
@@ -79,7 +78,7 @@ fn object(value: Value) -> Map<String, Value> {
 }
 
 /// Writes one file. The metadata has one entry: with several, their order would change from run to run.
-fn write(path: &Path, tensors: &[Tensor], numbers: &Map<String, Value>) -> Result<(), BenchError> {
+fn write(path: &Path, tensors: &[ExportTensor], numbers: &Map<String, Value>) -> Result<(), BenchError> {
     let failed = |message: String| BenchError::Tensors { path: path.to_owned(), message };
     let mut views = Vec::with_capacity(tensors.len());
     for tensor in tensors {
@@ -88,13 +87,13 @@ fn write(path: &Path, tensors: &[Tensor], numbers: &Map<String, Value>) -> Resul
     }
     let metadata = HashMap::from([("skilltree".to_owned(), Value::Object(numbers.clone()).to_string())]);
     let bytes = safetensors::serialize(views, Some(metadata)).map_err(|error| failed(error.to_string()))?;
-    put(path, &bytes)
+    write_file(path, &bytes)
 }
 
 /// The tensors and numbers of a file, for the README.
-fn table(tensors: &[Tensor], numbers: &Map<String, Value>) -> String {
+fn table(tensors: &[ExportTensor], numbers: &Map<String, Value>) -> String {
     let mut text = String::from("| tensor | shape | type | unit | meaning |\n|---|---|---|---|---|\n");
-    for Tensor { name, dtype, shape, unit, meaning, .. } in tensors {
+    for ExportTensor { name, dtype, shape, unit, meaning, .. } in tensors {
         let _ = writeln!(text, "| `{name}` | {shape:?} | {dtype:?} | {unit} | {meaning} |");
     }
     text.push_str("\nMetadata, JSON under the key `skilltree`:\n\n");

@@ -1,10 +1,8 @@
-//! The experiments that benchmarks are cut from: the shipped configs, built in, so that the command works anywhere.
+//! The shipped configs that benchmarks are cut from, built in, so that the command works anywhere.
 
-use super::BenchError;
+use super::{BenchError, make_folder, write_file};
 use crate::config::plan::Plan;
 use crate::config::{Overrides, load};
-use std::fs;
-use std::path::Path;
 
 /// The shipped files that benchmarks need.
 const FILES: [(&str, &str); 4] = [
@@ -24,21 +22,18 @@ pub const THRESHOLDS: &str = "thresholds.toml";
 pub const ONE_POINT: [&str; 2] =
     ["sweep.skill.recharge.applicable.dock=[0.15]", "sweep.skill.recharge.applicable.pass-door=[0.4]"];
 
-/// A shipped config with some keys set, and seeds from 0 to below `seeds`.
+/// A shipped config with some keys set (`key=value`), and seeds from 0 to below `seeds`.
 ///
 /// # Errors
-/// Where the temporary folder cannot be written, or a key has no such value.
-pub fn plan(config: &str, set: &[&str], seeds: u32) -> Result<Plan, BenchError> {
-    let failed = |path: &Path, source| BenchError::File { path: path.to_owned(), source };
-    let folder = tempfile::tempdir().map_err(|source| failed(&std::env::temp_dir(), source))?;
+/// Where a key has no such value.
+pub fn embedded_plan(config: &str, set: &[&str], seeds: u32) -> Result<Plan, BenchError> {
+    let set = set.iter().map(|text| (*text).to_owned()).collect();
+    let overrides = Overrides { set, seeds: Some(format!("0..{seeds}")), ..Overrides::default() };
+    let folder = tempfile::tempdir().map_err(|source| BenchError::File { path: std::env::temp_dir(), source })?;
     for (name, text) in FILES {
         let path = folder.path().join(name);
-        let parent = path.parent().unwrap_or(folder.path());
-        fs::create_dir_all(parent).and_then(|()| fs::write(&path, text)).map_err(|source| failed(&path, source))?;
+        make_folder(path.parent().unwrap_or(folder.path()))?;
+        write_file(&path, text.as_bytes())?;
     }
-    let set = set.iter().map(|text| (*text).to_owned()).collect();
-    Ok(load(
-        &folder.path().join(config),
-        &Overrides { set, seeds: Some(format!("0..{seeds}")), ..Overrides::default() },
-    )?)
+    Ok(load(&folder.path().join(config), &overrides)?)
 }

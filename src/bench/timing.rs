@@ -1,12 +1,13 @@
-//! Time, and what is told of several measurements of it.
+//! Time, and what is told of several measurements.
 
 use super::BenchError;
 use serde::{Deserialize, Serialize};
+use std::hint::black_box;
 use std::time::Instant;
 
 /// How long something took.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Span {
+pub struct Elapsed {
     /// Seconds on the wall.
     pub wall: f64,
     /// CPU-seconds of all threads of this process; seconds on the wall where the system does not tell.
@@ -17,7 +18,7 @@ pub struct Span {
 ///
 /// # Errors
 /// Those of the call.
-pub fn timed<T>(call: impl FnOnce() -> Result<T, BenchError>) -> Result<(T, Span), BenchError> {
+pub fn timed<T>(call: impl FnOnce() -> Result<T, BenchError>) -> Result<(T, Elapsed), BenchError> {
     let (before, begun) = (cpu_seconds(), Instant::now());
     let value = call()?;
     let wall = begun.elapsed().as_secs_f64().max(1.0e-9);
@@ -25,7 +26,7 @@ pub fn timed<T>(call: impl FnOnce() -> Result<T, BenchError>) -> Result<(T, Span
         (Some(before), Some(after)) => (after - before).max(1.0e-9),
         _ => wall,
     };
-    Ok((value, Span { wall, cpu }))
+    Ok((value, Elapsed { wall, cpu }))
 }
 
 /// CPU time of all threads of this process, ended ones included.
@@ -65,40 +66,37 @@ impl Spread {
         };
         Some(Self { median: at(0.5), low: at(0.25), high: at(0.75) })
     }
+
+    /// In another unit, with so many digits: `median [low, high]`.
+    pub fn text(&self, factor: f64, digits: usize) -> String {
+        let [median, low, high] = [self.median, self.low, self.high].map(|value| value * factor);
+        format!("{median:.digits$} [{low:.digits$}, {high:.digits$}]")
+    }
 }
 
-/// Turns of the control loop.
-const TURNS: u32 = 4_000_000;
+/// Cores that this process may use.
+pub fn cores() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
 
-/// How many of `threads` cores were free: the work of a loop that needs nothing but a core, done by all threads at
-/// once, over that of one thread in the same time.
-pub fn free_cores(threads: usize) -> f64 {
-    let all = || {
+/// How many of all cores are free: the work of a loop that needs nothing but a core, done by one thread on each at once,
+/// over that of one thread in the same time.
+pub fn free_cores() -> f64 {
+    let spin = || {
+        let mut state = black_box(1_u32);
+        for _turn in 0..4_000_000 {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        }
+        black_box(state);
+    };
+    let seconds = |threads: usize| {
         let begun = Instant::now();
-        std::thread::scope(|scope| {
-            for _thread in 0..threads {
-                scope.spawn(spin);
-            }
-        });
+        std::thread::scope(|scope| (0..threads).for_each(|_thread| drop(scope.spawn(spin))));
         begun.elapsed().as_secs_f64()
     };
     // The least of three: what disturbs one thread says nothing about the cores.
-    let alone = (0..3).map(|_| {
-        let begun = Instant::now();
-        spin();
-        begun.elapsed().as_secs_f64()
-    });
-    let alone = alone.fold(f64::INFINITY, f64::min);
-    threads as f64 * alone / all().max(1.0e-9)
-}
-
-/// A chain of dependent multiplications.
-fn spin() {
-    let mut state = std::hint::black_box(1_u32);
-    for _turn in 0..TURNS {
-        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-    }
-    std::hint::black_box(state);
+    let alone = (0..3).map(|_try| seconds(1)).fold(f64::INFINITY, f64::min);
+    (cores() as f64 * alone / seconds(cores())).min(cores() as f64)
 }
 
 #[cfg(test)]
@@ -109,6 +107,7 @@ mod tests {
     fn quartiles_are_interpolated() {
         let spread = Spread::of([4.0, 1.0, 3.0, 2.0]).expect("some");
         assert_eq!((spread.low, spread.median, spread.high), (1.75, 2.5, 3.25));
+        assert_eq!(spread.text(2.0, 1), "5.0 [3.5, 6.5]");
         assert_eq!(Spread::of([7.0]), Some(Spread { median: 7.0, low: 7.0, high: 7.0 }));
         assert_eq!(Spread::of([]), None);
     }
