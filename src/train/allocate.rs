@@ -3,6 +3,7 @@
 use crate::config::plan::{Arm, Child, Input, Optimiser, Skill, Threshold};
 use crate::layout::sensors::{GROUP_SONAR, GROUP_SONAR_COMPASS};
 use crate::layout::{
+    OPTIMISER_ADAM, OPTIMISER_ADAM_ROWS, OPTIMISER_SGD,
     ELEMENTARY_STEP_WORDS, EVENTS, HyperParams, LANES, LESSON_HEADER_WORDS, LearnerState, MAX_CHILDREN, MAX_GROUPS, MAX_INPUTS,
     MAX_ROWS, MAX_SKILLS, MAX_STARTS, STEP_WORDS, TRIAL_WORDS, SKILL_CODE, SONAR_CODES, SkillShape,
 };

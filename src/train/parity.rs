@@ -6,7 +6,7 @@ use crate::backend::parity::{self, Difference, UNWRITTEN};
 use crate::backend::{Backend, BackendError, Cohort, Stop, Test};
 use crate::config::plan::{NoiseKind, Plan};
 use crate::env::workgroup::CohortData;
-use crate::layout::{Action, BASE_WORDS, Episode, Robot};
+use crate::layout::{Action, Episode, Observation, Robot};
 use crate::math::rng::philox;
 use crate::world::Pose;
 use glam::Vec2;

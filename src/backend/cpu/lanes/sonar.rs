@@ -5,7 +5,7 @@
 
 use super::draws::place_of;
 use crate::env::segments::{BLOCK, SegmentGrid};
-use crate::env::sonar::{INVERSE_LIMIT, LINES, SLIVER, SONAR_LIMIT};
+use crate::env::sonar::{INVERSE_LIMIT, LINES, SLIVER};
 use crate::layout::LANES;
 use crate::math::functions::{reciprocal, sin_cos};
 use crate::math::reduce::Lanes;
@@ -46,7 +46,7 @@ pub fn rays(cosine: f32, sine: f32) -> (Lines, Lines) {
     (ux, uy)
 }
 
-/// Distance along each ray to the nearest segment; [`SONAR_LIMIT`], but for rounding, where there is none so close.
+/// Distance along each ray to the nearest segment; `SONAR_LIMIT`, but for rounding, where there is none so close.
 ///
 /// What a segment brings goes by way of memory, which `black_box` stands for: from there a number reaches all lanes at
 /// no cost, and out of a vector at that of two more operations.
