@@ -1,9 +1,9 @@
 // Which children may be chosen now: the Persistence Rule (paper, section VI.B).
 
-// What a skill may choose at one step.
+// What a skill may choose at one step. `offered` is what a free choice is made among; where the running child may not be
+// left, that child as well.
 struct Choices {
     applicable: u32,
-    // What a free choice is made among; where the running child may not be left, that child as well.
     offered: u32,
     allowed: u32,
     decision: u32,

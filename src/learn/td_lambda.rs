@@ -11,9 +11,7 @@ use super::lesson::{
     LESSON_END, LESSON_STEPS, STEP_CHOICE, STEP_REWARD, choice_allowed, choice_child, choice_is_free, choice_offered,
 };
 use crate::env::workgroup::Workgroup;
-use crate::layout::{
-    BACKUP_DECISIONS, BACKUP_STEPS, LANES, LESSON_HEADER_WORDS, PHASE_FAILED, SkillShape, TRUNCATED,
-};
+use crate::layout::{BACKUP_DECISIONS, BACKUP_STEPS, LANES, LESSON_HEADER_WORDS, PHASE_FAILED, SkillShape, TRUNCATED};
 use crate::math::functions::{exponential, is_number, ln};
 use crate::math::reduce::lanes_or;
 use crate::math::rng::{Purpose, Stream, below, draw, unit};

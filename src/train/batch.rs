@@ -12,7 +12,7 @@ use super::thresholds::{Fit, fit};
 use super::train_loop::{Climb, Halt, Keeper, Taker};
 use crate::backend::{Backend, Cohort, Stop};
 use crate::config::plan::{Child, Plan, Threshold};
-use crate::layout::{LANES, LearnerState, TRIAL_WORDS, SkillShape, PHASE_FAILED};
+use crate::layout::{LANES, LearnerState, PHASE_FAILED, SkillShape, TRIAL_WORDS};
 use crate::run_folder::Failure;
 
 /// A learner that has learned everything below the root.

@@ -5,8 +5,8 @@
 
 use super::batch_group::LearnerId;
 use crate::backend::Cohort;
-use crate::config::plan::{Arm, Plan};
 use crate::backend::cpu::CPU;
+use crate::config::plan::{Arm, Plan};
 use crate::env::workgroup::{Nets, Workgroup};
 use crate::layout::{LANES, LESSON_HEADER_WORDS, PHASE_FAILED, SkillShape};
 use crate::learn::lesson::choice_child;

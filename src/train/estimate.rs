@@ -11,7 +11,7 @@ use super::pretraining::group_of;
 use super::schedule::Stage;
 use crate::backend::{Backend, BackendError, Stop};
 use crate::config::plan::{Backup, Plan, Skill};
-use crate::layout::{LearnerState, TRIAL_WORDS, SkillShape};
+use crate::layout::{LearnerState, SkillShape, TRIAL_WORDS};
 use std::time::{Duration, Instant};
 
 /// Mean length of a trial that ends when its goal is achieved, as a share of `max_steps`: 0.4 to 0.7 in our runs.

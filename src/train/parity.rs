@@ -2,7 +2,8 @@
 
 use super::batch_group::{Group, LearnerId, SetupError, groups};
 use super::observation::{floor_only, robot_at};
-use crate::backend::parity::{self, Difference, UNWRITTEN};
+use crate::backend::UNWRITTEN;
+use crate::backend::parity::{self, Difference};
 use crate::backend::{Backend, BackendError, Cohort, Stop, Test};
 use crate::config::plan::{NoiseKind, Plan};
 use crate::env::workgroup::CohortData;

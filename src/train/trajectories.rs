@@ -3,8 +3,8 @@
 use super::batch::unpack;
 use super::batch_group::Group;
 use super::result::LearnerResult;
-use crate::config::plan::Plan;
 use crate::backend::cpu::CPU;
+use crate::config::plan::Plan;
 use crate::env::workgroup::{Nets, Workgroup};
 use crate::layout::{Dispatch, EPISODE_RUNNING, EPISODE_TERMINATED, Episode};
 use crate::policy::applicability::run_child;
