@@ -2,7 +2,7 @@
 //!
 //! The first round is not counted: it compiles shaders and fills caches. In every round all bytes are compared.
 
-use super::benchmarks::{BenchSizes, Benchmark, Decisions, HierarchyLearners, Measurement, RobotSteps, Training};
+use super::benchmarks::{BenchSizes, Benchmark, Decisions, HierarchyLearners, Measurement, RobotSteps, WholeLearners};
 use super::benchmarks::{Transitions, UpdateRule};
 use super::embedded_configs::{HIERARCHY, ONE_POINT, THRESHOLDS};
 use super::executor::{Executor, ExecutorInfo, ExecutorKind, ExecutorSet, open_executors};
@@ -49,8 +49,8 @@ pub fn bench(options: BenchOptions, command: &str, note: &mut dyn FnMut(&str)) -
     }
     benchmarks.push(Box::new(Decisions::new(&hierarchy, sizes)));
     if let Some(lean) = &lean {
-        benchmarks.push(Box::new(Training::new("learners", &hierarchy, on_cpu, on_card)));
-        benchmarks.push(Box::new(Training::new("learners-lean", lean, on_cpu, on_card)));
+        benchmarks.push(Box::new(WholeLearners::new("learners", &hierarchy, on_cpu, on_card)));
+        benchmarks.push(Box::new(WholeLearners::new("learners-lean", lean, on_cpu, on_card)));
         if software {
             left_out.push("learners on software adapters: they would take too long".to_owned());
         }
