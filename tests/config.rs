@@ -375,7 +375,7 @@ fn mistakes_in_the_world_point_into_the_world_file() {
     assert!(text.starts_with("places"));
     for (from, to, message) in [
         ("charger = { box = [0, 0, 24, 24] }\n", "", "`docked` cannot happen: the world `world` has no charger"),
-        ("light = { at = [12, 12], range = 100 }\n", "", "the world `world` has no light to see"),
+        ("light = { at = [12, 12], range = 100 }\n", "", "the world `world` has no light"),
     ] {
         let config = FILE.replace("'bumpers'", "'light'");
         let error = attempt(&config, &WORLD.replace(from, to)).0.expect_err(message);

@@ -7,7 +7,8 @@ use skilltree::config::plan::{
     Action, Alteration, Arm, Backup, Child, Choice, Event, Input, Noise, NoiseKind, Persistence, Plan, Robot, Skill,
     Threshold,
 };
-use skilltree::config::{ConfigError, Overrides, Place, keys, load};
+use skilltree::config::{ConfigError, Overrides, Place, load};
+use skilltree::layout::sensors::SONAR_SCALE;
 use std::path::PathBuf;
 
 const FAMILY: &str = "\
@@ -205,7 +206,7 @@ fn skills_say_what_they_see_and_how_they_choose() {
         Input::LightTrace,
         Input::DoorTrace,
         Input::RangeMeans,
-        Input::SonarCompass { scale: keys::SONAR_DEFAULT },
+        Input::SonarCompass { scale: SONAR_SCALE },
     ];
     assert_eq!(skill(&plan, "full", "explore").inputs, seen);
     assert_eq!((recharge.tested_at.as_slice(), recharge.choice), (&[0, 20, 60][..], Choice::Learned));
@@ -430,13 +431,13 @@ fn what_does_not_go_together_is_shown_in_the_file() {
         ("['sonar', 'bumpers']", "['sonar', 'compass']", "'right'", "whose input `compass` has none", "sonar-far"),
         ("mirror = 'right'", "mirror = 3", "mirror = 3", "must be the name of a skill, or false", "mirror = false"),
         ("[skill.spare]", "[skill.turn-15]", "turn-15", "`turn-15` cannot be the name of a skill", "another name"),
-        ("worlds/easy", "other/dark", "['light']", "the world `dark` has no light to see", "[light]"),
+        ("worlds/easy", "other/dark", "['light']", "the world `dark` has no light", "[light]"),
         ("worlds/easy", "other/bare", "docked", "cannot happen: the world `bare` has no charger", "add charger"),
         (
             "[arm.full]\nroot = 'recharge'",
             "[arm.full]\nroot = 'dock'\nworld = 'other/closed.toml'\nskill.dock.inputs = ['door-trace']",
             "'door-trace'",
-            "the world `closed` has no doors to pass",
+            "the world `closed` has no doors",
             "[[doors]]",
         ),
         (

@@ -74,24 +74,12 @@ fn no_way_of_carrying_it_out_changes_a_byte() {
 
 /// All rows of both tables that pass, names written out, numbers to the last bit.
 fn rows(out: &Path, keep: impl Fn(&str, u32) -> bool) -> Vec<String> {
-    let (names, trials) = read_trials(&out.join(TRIALS)).unwrap();
-    let mut rows = Vec::new();
-    for mut row in trials {
-        let (arm, skill) = (&names.arms[row.arm as usize], &names.skills[row.skill as usize]);
-        if keep(arm, row.seed) {
-            (row.arm, row.skill) = (0, 0);
-            rows.push(format!("{arm} {skill} {} {row:?}", row.reward.to_bits()));
-        }
-    }
-    let (names, tests) = read_evaluations(&out.join(EVALUATIONS)).unwrap();
-    for mut row in tests {
-        let (arm, skill, room) =
-            (&names.arms[row.arm as usize], &names.skills[row.skill as usize], &names.rooms[row.room as usize]);
-        if keep(arm, row.seed) {
-            (row.arm, row.skill, row.room) = (0, 0, 0);
-            rows.push(format!("{arm} {skill} {room} {} {row:?}", row.reward.to_bits()));
-        }
-    }
+    let (_, trials) = read_trials(&out.join(TRIALS)).unwrap();
+    let trials = trials.iter().filter(|row| keep(&row.arm, row.seed));
+    let mut rows: Vec<String> = trials.map(|row| format!("{} {row:?}", row.reward.to_bits())).collect();
+    let (_, tests) = read_evaluations(&out.join(EVALUATIONS)).unwrap();
+    let tests = tests.iter().filter(|row| keep(&row.arm, row.seed));
+    rows.extend(tests.map(|row| format!("{} {row:?}", row.reward.to_bits())));
     rows
 }
 

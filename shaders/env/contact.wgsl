@@ -17,7 +17,7 @@ struct Travel {
 
 // Distance at which the rim meets a point at (`ex`, `ey`) from the centre, `FAR` if it never does, and how
 // far the centre then still is behind the point.
-fn meet(ex: f32, ey: f32, ux: f32, uy: f32) -> vec2<f32> {
+fn disc_to_point(ex: f32, ey: f32, ux: f32, uy: f32) -> vec2<f32> {
     let ahead = ex * ux + ey * uy;
     let across = ex * uy - ey * ux;
     let chord = RADIUS * RADIUS - across * across;
@@ -28,7 +28,7 @@ fn meet(ex: f32, ey: f32, ux: f32, uy: f32) -> vec2<f32> {
 }
 
 // Distance to contact with one segment, and the cosine between the travel and the contact point.
-fn contact(i: u32, x: f32, y: f32, ux: f32, uy: f32) -> vec2<f32> {
+fn disc_to_segment(i: u32, x: f32, y: f32, ux: f32, uy: f32) -> vec2<f32> {
     let wx = x - world.segment[i].ax;
     let wy = y - world.segment[i].ay;
     let tx = world.segment[i].tx;
@@ -46,24 +46,24 @@ fn contact(i: u32, x: f32, y: f32, ux: f32, uy: f32) -> vec2<f32> {
     var reach = select(FAR, line_reach, line_hit);
     var cosine = closing;
     // The end points: the disc's rim meets a point.
-    let meet_a = meet(-wx, -wy, ux, uy);
+    let meet_a = disc_to_point(-wx, -wy, ux, uy);
     let hit_a = length >= 0.0f && meet_a.x < reach;
     cosine = select(cosine, meet_a.y * INVERSE_RADIUS, hit_a);
     reach = select(reach, meet_a.x, hit_a);
-    let meet_b = meet(world.segment[i].bx - x, world.segment[i].by - y, ux, uy);
+    let meet_b = disc_to_point(world.segment[i].bx - x, world.segment[i].by - y, ux, uy);
     let hit_b = length >= 0.0f && meet_b.x < reach;
     cosine = select(cosine, meet_b.y * INVERSE_RADIUS, hit_b);
     reach = select(reach, meet_b.x, hit_b);
     return vec2<f32>(reach, cosine);
 }
 
-fn sweep(lane: u32, x: f32, y: f32, ux: f32, uy: f32, reach: f32) -> Travel {
+fn sweep_disc(lane: u32, x: f32, y: f32, ux: f32, uy: f32, reach: f32) -> Travel {
     var nearest = FAR;
     var charger = 0u;
     for (var first = 0u; first < world.segments; first += LANES) {
         let i = first + lane;
         if i < world.segments {
-            let hit = contact(i, x, y, ux, uy);
+            let hit = disc_to_segment(i, x, y, ux, uy);
             let closer = hit.x < nearest;
             let plug = world.segment[i].charger == 1u && hit.y >= world.dock_cosine;
             // Segments touched at once count together, on one lane as on several.
@@ -73,12 +73,13 @@ fn sweep(lane: u32, x: f32, y: f32, ux: f32, uy: f32, reach: f32) -> Travel {
         }
     }
     let least = lanes_min(lane, nearest);
-    let plugged = lanes_or(lane, select(0u, charger, nearest == least));
+    let plug = select(0u, charger, nearest == least);
+    let plugged = lanes_or(lane, plug);
     let blocked = least < reach;
     return Travel(select(reach, least, blocked), blocked, blocked && plugged == 1u);
 }
 
-fn bumpers(lane: u32, x: f32, y: f32, cosine: f32, sine: f32) -> u32 {
+fn touching_bumpers(lane: u32, x: f32, y: f32, cosine: f32, sine: f32) -> u32 {
     var bits = 0u;
     for (var first = 0u; first < world.segments; first += LANES) {
         let i = first + lane;

@@ -1,4 +1,4 @@
-// What an action earned: events and their amounts.
+// What an action brought about, and what that earns.
 
 const NOWHERE: u32 = 255u;
 const SIDE_FIRST: u32 = 2u;
@@ -14,6 +14,7 @@ fn room_of(x: f32, y: f32) -> u32 {
     return found;
 }
 
+// `PASSED_DOOR` where the robot is in another room than `origin` and clear of every doorway.
 fn passed_door(origin: u32, x: f32, y: f32) -> u32 {
     let room = room_of(x, y);
     var clear = true;
@@ -26,13 +27,14 @@ fn passed_door(origin: u32, x: f32, y: f32) -> u32 {
     return select(0u, PASSED_DOOR, passed);
 }
 
+// `BESIDE_RIGHT` and `BESIDE_LEFT` where a forward move that was not blocked ended with the nearest reading of
+// that side between `near` and `far` inches.
 fn following_wall(near: u32, far: u32, action: u32, events: u32) -> u32 {
     var left = 255u;
     var right = 255u;
     for (var ray = SIDE_FIRST; ray <= SIDE_LAST; ray++) {
-        let reading = (record[ray / 4u] >> (8u * (ray % 4u))) & 0xffu;
-        let mirror = RAYS - ray;
-        let other = (record[mirror / 4u] >> (8u * (mirror % 4u))) & 0xffu;
+        let reading = sonar_inches(ray);
+        let other = sonar_inches(RAYS - ray);
         left = select(left, reading, reading < left);
         right = select(right, other, other < right);
     }
@@ -43,10 +45,10 @@ fn following_wall(near: u32, far: u32, action: u32, events: u32) -> u32 {
     return on_left | on_right;
 }
 
-fn reward_of(s: u32, events: u32) -> f32 {
+fn reward_of(skill: u32, events: u32) -> f32 {
     var sum = 0.0f;
     for (var event = 0u; event < EVENTS; event++) {
-        let amount = params[s].reward[event];
+        let amount = params[params_base + skill].reward[event];
         sum = sum + select(0.0f, amount, ((events >> event) & 1u) == 1u);
     }
     return sum;

@@ -4,9 +4,9 @@
 // sight only. Our choice: the paper states 24 binary readings and no more. Near the charger several
 // bearings are lit, far away one.
 
-const SHARPNESS: f32 = 14.59025f;
+const BEAM_SHARPNESS: f32 = 14.59025f;
 
-fn in_sight(lane: u32, x: f32, y: f32) -> bool {
+fn light_in_sight(lane: u32, x: f32, y: f32) -> bool {
     let lx = world.light_x - x;
     let ly = world.light_y - y;
     var hidden = 0u;
@@ -45,5 +45,5 @@ fn brightness(most: f32, x: f32, y: f32, ux: f32, uy: f32) -> f32 {
     let distance2 = select(1.0f, square, square > 1.0f);
     let nearness = reciprocal_sqrt(distance2);
     let aim = (ux * lx + uy * ly) * nearness;
-    return most * exponential(SHARPNESS * (aim - 1.0f));
+    return most * exponential(BEAM_SHARPNESS * (aim - 1.0f));
 }

@@ -3,23 +3,25 @@
 // All of it is our choice: the paper's high-level inputs are "abstract information derived from the low-level
 // sensory inputs".
 
-fn looking(quarter: u32) -> f32 {
-    let turned = u32(bitcast<f32>(record[7]) * READINGS_PER_DEGREE + 0.5f);
+// Reading of the record that looks along the compass's direction `quarter` x 90 degrees, inches.
+fn range_toward(quarter: u32) -> f32 {
+    let turned = u32(compass_degrees() * READINGS_PER_DEGREE + 0.5f);
     let ray = (6u * quarter + 2u * RAYS - turned) % RAYS;
-    return f32((record[ray / 4u] >> (8u * (ray % 4u))) & 0xffu);
+    return f32(sonar_inches(ray));
 }
 
-fn remember(s: u32) {
-    let across = (looking(0u) + looking(2u)) * 0.007874016f - 1.0f;
-    let along = (looking(1u) + looking(3u)) * 0.007874016f - 1.0f;
+fn remember(skill: u32) {
+    let s = params_base + skill;
+    let across = (range_toward(0u) + range_toward(2u)) * INVERSE_LIMIT - 1.0f;
+    let along = (range_toward(1u) + range_toward(3u)) * INVERSE_LIMIT - 1.0f;
     // The first reading stands for the past that there is not.
     let past = select(params[s].range_mean, 0.0f, agent.step == 0u);
     agent.east_west = flush(past * agent.east_west + (1.0f - past) * across);
     agent.north_south = flush(past * agent.north_south + (1.0f - past) * along);
-    let lit = (record[6] & 0x00ffffffu) != 0u;
+    let lit = lit_bearings() != 0u;
     agent.light = select(flush(agent.light * params[s].light_trace), 1.0f, lit);
     let passed = (agent.events & PASSED_DOOR) != 0u;
-    let turn = sin_cos(bitcast<f32>(record[7]));
+    let turn = sin_cos(compass_degrees());
     agent.door = select(flush(agent.door * params[s].door_trace), 1.0f, passed);
     agent.door_cosine = select(flush(agent.door_cosine * params[s].door_trace), turn.y, passed);
     agent.door_sine = select(flush(agent.door_sine * params[s].door_trace), turn.x, passed);
@@ -27,12 +29,12 @@ fn remember(s: u32) {
 
 fn recall(lane: u32) {
     if lane == 0u {
-        record[MEMORY_WORD] = bitcast<u32>(agent.east_west);
-        record[MEMORY_WORD + 1u] = bitcast<u32>(agent.north_south);
-        record[MEMORY_WORD + 2u] = bitcast<u32>(agent.light);
-        record[MEMORY_WORD + 3u] = bitcast<u32>(agent.door);
-        record[MEMORY_WORD + 4u] = bitcast<u32>(agent.door_cosine);
-        record[MEMORY_WORD + 5u] = bitcast<u32>(agent.door_sine);
+        record[STEP_EAST_WEST] = bitcast<u32>(agent.east_west);
+        record[STEP_NORTH_SOUTH] = bitcast<u32>(agent.north_south);
+        record[STEP_LIGHT_TRACE] = bitcast<u32>(agent.light);
+        record[STEP_DOOR_TRACE] = bitcast<u32>(agent.door);
+        record[STEP_DOOR_COSINE] = bitcast<u32>(agent.door_cosine);
+        record[STEP_DOOR_SINE] = bitcast<u32>(agent.door_sine);
     }
     workgroupBarrier();
 }

@@ -1,26 +1,9 @@
 // The six actions: noisy turns in place and noisy travel that stops at contact.
 
-const DOCKED: u32 = 1u;
-const COLLISION: u32 = 2u;
-const PASSED_DOOR: u32 = 4u;
-const BESIDE_RIGHT: u32 = 8u;
-const BESIDE_LEFT: u32 = 16u;
-const FORWARD: u32 = 4u;
-const BACKWARD: u32 = 5u;
-const NO_ACTION: u32 = 255u;
-
-struct Moved {
-    x: f32,
-    y: f32,
-    heading: f32,
-    bumpers: u32,
-    events: u32,
-}
-
 fn turn_of(action: u32) -> f32 {
-    let size = select(60.0f, 15.0f, action < 2u);
-    let signed = select(size, -size, (action & 1u) == 1u);
-    return select(0.0f, signed, action < FORWARD);
+    let known = action < ACTIONS;
+    let row = select(0u, action, known);
+    return select(0.0f, ACTION_TURN[row], known);
 }
 
 fn heading_after(heading: f32, action: u32, slip: f32) -> f32 {
@@ -30,32 +13,19 @@ fn heading_after(heading: f32, action: u32, slip: f32) -> f32 {
 fn move_body(lane: u32, x: f32, y: f32, heading: f32, action: u32, slip: f32) -> Moved {
     let after = heading_after(heading, action, slip);
     let turn = sin_cos(after);
-    return go(lane, x, y, after, turn.x, turn.y, action, slip);
-}
-
-fn go(
-    lane: u32,
-    x: f32,
-    y: f32,
-    heading: f32,
-    sine: f32,
-    cosine: f32,
-    action: u32,
-    slip: f32,
-) -> Moved {
-    var moved = Moved(x, y, heading, 0u, 0u);
+    var moved = Moved(x, y, after, 0u, 0u);
     if action == FORWARD || action == BACKWARD {
-        let ux = select(-cosine, cosine, action == FORWARD);
-        let uy = select(-sine, sine, action == FORWARD);
+        let ux = select(-turn.y, turn.y, action == FORWARD);
+        let uy = select(-turn.x, turn.x, action == FORWARD);
         let wanted = 12.0f * slip;
         let reach = select(0.0f, wanted, wanted > 0.0f);
-        let travel = sweep(lane, x, y, ux, uy, reach);
+        let travel = sweep_disc(lane, x, y, ux, uy, reach);
         moved.x = x + ux * travel.distance;
         moved.y = y + uy * travel.distance;
         let docked = travel.connected && action == FORWARD;
         let stopped = select(0u, COLLISION, travel.blocked);
         moved.events = select(stopped, DOCKED, docked);
     }
-    moved.bumpers = bumpers(lane, moved.x, moved.y, cosine, sine);
+    moved.bumpers = touching_bumpers(lane, moved.x, moved.y, turn.y, turn.x);
     return moved;
 }

@@ -16,7 +16,7 @@ var<workgroup> ends: array<vec4<f32>, LANES>;
 var<workgroup> slopes: array<vec2<f32>, LANES>;
 
 // Direction of the lane's line: of its ray, or of the opposite one from ray 12 on.
-fn rays(lane: u32, cosine: f32, sine: f32) -> vec2<f32> {
+fn line_direction(lane: u32, cosine: f32, sine: f32) -> vec2<f32> {
     let ray = sin_cos(f32(lane % LINES) * 15.0f);
     let ux = cosine * ray.y - sine * ray.x;
     let uy = sine * ray.y + cosine * ray.x;
@@ -75,7 +75,7 @@ fn ranges(lane: u32, x: f32, y: f32, ux: f32, uy: f32) -> f32 {
     return reciprocal(closest);
 }
 
-fn reading(range: f32, error: f32) -> u32 {
+fn sonar_reading(range: f32, error: f32) -> u32 {
     let noisy = range * error;
     let low = select(0.0f, noisy, noisy > 0.0f);
     let bounded = select(SONAR_LIMIT, low, low < SONAR_LIMIT);

@@ -10,18 +10,13 @@
 @group(0) @binding(5) var<storage, read> nets: array<f32>;
 @group(0) @binding(6) var<storage, read_write> episodes: array<Episode>;
 
-const STATE_FRESH: u32 = 0u;
-const STATE_RUNNING: u32 = 1u;
-const STATE_ACHIEVED: u32 = 2u;
-const STATE_CUT: u32 = 3u;
-
 var<private> episode: Episode;
 
-fn weights_of(skill: u32, units: u32, base: u32, net: u32) -> u32 {
-    return net_of(skill, base, net);
+fn weights_offset(skill: u32, units: u32, net: u32) -> u32 {
+    return net_offset(skill, net);
 }
 
-fn stride_of(units: u32) -> u32 {
+fn row_stride(units: u32) -> u32 {
     return LANES;
 }
 
@@ -29,13 +24,18 @@ fn weight(at: u32) -> f32 {
     return nets[at];
 }
 
-fn begin(s: u32, number: u32) {
+fn test_stream(skill: u32, number: u32, step: u32, purpose: u32) -> Stream {
+    let s = params_base + dispatch.test_skill;
+    return Stream(vec2<u32>(params[s].run_seed, params[s].learner_seed), skill, number, step, purpose);
+}
+
+// Puts the robot at the start of test trial `number`.
+fn begin(number: u32) {
     let skill = dispatch.test_skill;
-    let key = vec2<u32>(params[s].run_seed, params[s].learner_seed);
-    let stream = Stream(key, dispatch.test_skill, number, 0u, PURPOSE_TEST_START);
-    let pose = start_pose(skills[skill].tests_offset, skills[skill].tests_count, draw(stream, 0u));
-    place(pose);
-    episode.state = STATE_RUNNING;
+    let words = draw(test_stream(skill, number, 0u, PURPOSE_TEST_START), 0u);
+    let pose = start_pose(skills[skill].tests_offset, skills[skill].tests_count, words);
+    reset(pose);
+    episode.state = EPISODE_RUNNING;
     episode.start_x = pose.x;
     episode.start_y = pose.y;
 }
@@ -49,32 +49,29 @@ fn evaluate(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_i
     episode = episodes[slot];
     agent = episode.agent;
     params_base = learner * dispatch.skills;
+    nets_base = learner * dispatch.nets_stride;
     let root = dispatch.test_skill;
     let s = params_base + root;
-    let base = learner * dispatch.nets_stride;
-    if episode.state == STATE_FRESH {
-        begin(s, number);
+    if episode.state == EPISODE_FRESH {
+        begin(number);
     }
     for (var iteration = 0u; iteration < dispatch.iterations; iteration++) {
-        if episode.state != STATE_RUNNING {
+        if episode.state != EPISODE_RUNNING {
             break;
         }
-        let key = vec2<u32>(params[s].run_seed, params[s].learner_seed);
-        let stream = Stream(key, root | (dispatch.test_number << 8u), number, agent.step, PURPOSE_TEST);
-        draw_step(lane, stream);
-        sense(lane, s);
+        draw_step(lane, test_stream(root | (dispatch.test_number << 8u), number, agent.step, PURPOSE_TEST));
+        observe_and_score(lane, root);
         let achieved = (agent.events & skills[root].ends) != 0u;
         if achieved || agent.step >= params[s].max_steps {
-            episode.state = select(STATE_CUT, STATE_ACHIEVED, achieved);
+            episode.state = select(EPISODE_TRUNCATED, EPISODE_TERMINATED, achieved);
         } else {
-            watch(lane, base, root);
-            think(lane, base, root);
-            let persist = params[s].persist_tests == 1u;
-            let found = options(root, persist);
-            let child = choose(lane, s, skills[root].children, found.allowed, 1.0f, true, random[DRAW_CHOICE].x);
-            commit(root, child, found);
-            let action = descend(lane, base, root, child);
-            execute(lane, s, action);
+            value_children(lane, root);
+            q_values(lane, root);
+            let choices = action_mask(root, params[s].persist_tests == 1u);
+            let child = choose(lane, root, choices.allowed, 1.0f, true, random[DRAW_CHOICE].x);
+            commit(root, child, choices);
+            let action = descend_to_action(lane, root, child);
+            apply_action(lane, root, action);
         }
     }
     episode.agent = agent;

@@ -11,13 +11,12 @@
 fn step(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     let number = dispatch.first + group.x;
     var robot = robots[number];
-    let terms = robot.noise;
     for (var iteration = 0u; iteration < dispatch.iterations; iteration++) {
         let key = vec2<u32>(robot.run_seed, robot.robot_seed);
-        let stream = Stream(key, 0u, 0u, robot.step, PURPOSE_GIVEN);
-        draw_step(lane, stream);
+        draw_step(lane, Stream(key, 0u, 0u, robot.step, PURPOSE_GIVEN));
         if robot.action != NO_ACTION {
-            let slip = terms.actuator * noise(terms.kind, random[DRAW_ACTUATOR].x, random[DRAW_ACTUATOR].y) + 1.0f;
+            let slip =
+                robot.noise.actuator * noise(robot.noise.kind, random[DRAW_ACTUATOR].x, random[DRAW_ACTUATOR].y) + 1.0f;
             let moved = move_body(lane, robot.x, robot.y, robot.heading, robot.action, slip);
             robot.x = moved.x;
             robot.y = moved.y;
@@ -25,13 +24,15 @@ fn step(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
             robot.bumpers = moved.bumpers;
             robot.events = moved.events;
         }
-        observe(lane, robot.x, robot.y, robot.heading, robot.bumpers, terms);
+        observe(lane, robot.x, robot.y, robot.heading, robot.bumpers, robot.noise);
         robot.step += 1u;
     }
     if lane == 0u {
-        for (var word = 0u; word < BASE_WORDS; word++) {
-            robot.record[word] = record[word];
+        for (var word = 0u; word < SONAR_WORDS; word++) {
+            robot.sensed.sonar[word] = record[OBSERVATION_SONAR + word];
         }
+        robot.sensed.light_bumpers = record[OBSERVATION_LIGHT_BUMPERS];
+        robot.sensed.compass = bitcast<f32>(record[OBSERVATION_COMPASS]);
         robots[number] = robot;
     }
 }

@@ -7,20 +7,26 @@
 // A skill over skills may learn at its decisions only: between them rewards are summed with their discount, and
 // lambda mixes at decisions.
 
-const BACKUP_STEPS: u32 = 0u;
-const BACKUP_DECISIONS: u32 = 2u;
+fn learner_stream(trial: u32, step: u32, purpose: u32) -> Stream {
+    let s = params_base + state.skill;
+    return Stream(vec2<u32>(params[s].run_seed, params[s].learner_seed), state.skill, trial, step, purpose);
+}
 
-fn taught_lesson(s: u32, number: u32) -> u32 {
+// Word of the bank at which the learner's taught lesson `number` stands: one lesson drawn from each of
+// `lessons` equal strata of the bank.
+fn taught_lesson(number: u32) -> u32 {
     let skill = state.skill;
-    let key = vec2<u32>(params[s].run_seed, params[s].learner_seed);
-    let stream = Stream(key, state.skill, number, 0u, PURPOSE_LESSON);
-    let stratum = skills[skill].bank_lessons / params[s].lessons;
-    let index = number * stratum + below(draw(stream, 0u).x, stratum);
+    let stratum = skills[skill].bank_lessons / params[params_base + skill].lessons;
+    let word = draw(learner_stream(number, 0u, PURPOSE_LESSON), 0u).x;
+    let index = number * stratum + below(word, stratum);
     return skills[skill].bank_offset + index * skills[skill].lesson_stride;
 }
 
-fn recent_lesson(s: u32, word: u32) -> u32 {
+// Word of the memory at which a remembered lesson stands, its age drawn from an exponential
+// distribution of mean `mean_age`, cut off at the oldest.
+fn recent_lesson(word: u32) -> u32 {
     let skill = state.skill;
+    let s = params_base + skill;
     let kept = select(params[s].memory, state.remembered, state.remembered < params[s].memory);
     // The host sends the negative inverse of the mean age: kernels do not divide.
     let whole = 1.0f - exponential(params[s].age_decay * f32(kept));
@@ -39,30 +45,33 @@ fn lesson_word(offset: u32) -> u32 {
     return lessons[lessons_base + at];
 }
 
-fn begin_replay(s: u32, lesson: u32, taught: u32, mirrored: u32) {
+// Opens the replay of the lesson at word `lesson` of the bank (`taught` 1) or of the memory; `mirrored` 1 for what
+// would have happened to the mirror image of the robot in the mirror image of the world.
+fn begin_replay(lesson: u32, taught: u32, mirrored: u32) {
+    let s = params_base + state.skill;
     state.replay_lesson = lesson;
     state.replay_taught = taught;
     state.replay_mirrored = mirrored * params[s].mirror_replays;
-    let steps = lesson_word(0u);
-    let end = lesson_word(1u);
+    let steps = lesson_word(LESSON_STEPS);
+    let end = lesson_word(LESSON_END);
     state.replay += 1u;
     state.replay_left = steps;
-    state.replay_open = u32(end == CUT && params[s].timeout_terminal == 0u);
+    state.replay_open = u32(end == TRUNCATED && params[s].timeout_terminal == 0u);
     state.next_best = 0.0f;
     state.next_return = 0.0f;
 }
 
-fn load_record(lane: u32, step: u32) {
+fn load_step(lane: u32, step: u32) {
     let words = skills[state.skill].record_words;
-    let offset = LESSON_HEADER + step * words;
+    let at = LESSON_HEADER_WORDS + step * words;
     workgroupBarrier();
     if lane < words {
-        record[lane] = lesson_word(offset + lane);
+        record[lane] = lesson_word(at + lane);
     }
     workgroupBarrier();
 }
 
-fn reflected(skill: u32, children: u32, mirrored: bool) -> u32 {
+fn mirror_mask(skill: u32, children: u32, mirrored: bool) -> u32 {
     var bits = 0u;
     for (var child = 0u; child < skills[skill].children; child++) {
         let image = select(child, skills[skill].mirror_child[child], mirrored);
@@ -71,57 +80,58 @@ fn reflected(skill: u32, children: u32, mirrored: bool) -> u32 {
     return bits;
 }
 
-fn bounded(aim: f32, limit: f32) -> f32 {
-    let low = select(-limit, aim, aim > -limit);
+fn clip(target_value: f32, limit: f32) -> f32 {
+    let low = select(-limit, target_value, target_value > -limit);
     return select(limit, low, low < limit);
 }
 
-fn inner_drawn(s: u32, step: u32) -> bool {
-    let key = vec2<u32>(params[s].run_seed, params[s].learner_seed);
-    let stream = Stream(key, state.skill, state.trial, state.replay, PURPOSE_INNER);
-    return unit(draw(stream, step).x) < params[s].inner_share;
+fn learn_between_decisions(step: u32) -> bool {
+    let word = draw(learner_stream(state.trial, state.replay, PURPOSE_INNER), step).x;
+    return unit(word) < params[params_base + state.skill].inner_share;
 }
 
-fn aimed(s: u32, at: u32) -> f32 {
-    let reward = bitcast<f32>(lesson_word(at + 9u)) * params[s].value_scale;
+// What the Q-value of the step at word `at` of the lesson in replay should be, given what follows it.
+fn td_target(at: u32) -> f32 {
+    let s = params_base + state.skill;
+    let reward = bitcast<f32>(lesson_word(at + STEP_REWARD)) * params[s].value_scale;
     let future = (1.0f - params[s].lambda) * state.next_best + params[s].lambda * state.next_return;
-    return bounded(reward + params[s].gamma * future, params[s].target_limit);
+    return clip(reward + params[s].gamma * future, params[s].target_limit);
 }
 
-fn replay_step(lane: u32, s: u32, base: u32) {
+fn replay_step(lane: u32) {
     let skill = state.skill;
+    let s = params_base + skill;
     let open = state.replay_open == 1u;
     let step = select(state.replay_left - 1u, state.replay_left, open);
-    let at = LESSON_HEADER + step * skills[skill].record_words;
-    let marks = lesson_word(at + 8u);
-    let aim = aimed(s, at);
-    let inner = params[s].backup == BACKUP_DECISIONS && (marks >> 31u) == 0u && !open;
-    if inner && !inner_drawn(s, step) {
-        state.next_best = aim;
-        state.next_return = aim;
+    let at = LESSON_HEADER_WORDS + step * skills[skill].record_words;
+    let choice = lesson_word(at + STEP_CHOICE);
+    let target_value = td_target(at);
+    let inner = params[s].backup == BACKUP_DECISIONS && !choice_is_free(choice) && !open;
+    if inner && !learn_between_decisions(step) {
+        state.next_best = target_value;
+        state.next_return = target_value;
         state.replay_left = step;
     } else {
         let mirrored = state.replay_mirrored == 1u;
-        let done = marks & 0xffu;
-        let choices = (marks >> 16u) & 0xffu;
-        let offered = select((marks >> 8u) & 0xffu, choices, params[s].backup == BACKUP_STEPS);
-        let allowed = reflected(skill, offered, mirrored);
-        load_record(lane, step);
+        let done = choice_child(choice);
+        let available = select(choice_allowed(choice), choice_offered(choice), params[s].backup == BACKUP_STEPS);
+        let allowed = mirror_mask(skill, available, mirrored);
+        load_step(lane, step);
         encode(lane, skill, mirrored);
-        forward(lane, skill, s, base);
-        let outlook = weigh(lane, skills[skill].children, allowed, inverse_temperature(s, state.trial));
+        forward(lane, skill);
+        let found = boltzmann(lane, skills[skill].children, allowed, inverse_temperature(skill, state.trial));
         if open {
             state.replay_open = 0u;
-            state.next_best = outlook.best;
-            state.next_return = outlook.best;
+            state.next_best = found.best;
+            state.next_return = found.best;
         } else {
             let child = select(done, skills[skill].mirror_child[done], mirrored);
             let taught = params[s].taught_always == 1u && state.replay_taught == 1u;
-            let policy = taught || odds[child] > params[s].policy_threshold * outlook.total;
-            let stretched = outlook.best + params[s].advantage_scale * (aim - outlook.best);
+            let policy = taught || weights[child] > params[s].policy_threshold * found.total;
+            let stretched = found.best + params[s].advantage_scale * (target_value - found.best);
             let plain = params[s].advantage_scale == 1.0f;
-            let goal = select(bounded(stretched, params[s].target_limit), aim, plain);
-            let delta = goal - q[child];
+            let aim = select(clip(stretched, params[s].target_limit), target_value, plain);
+            let delta = aim - q[child];
             // Of all children: one that is never chosen again would not be found out otherwise.
             var sound = is_number(delta);
             for (var other = 0u; other < skills[skill].children; other++) {
@@ -132,23 +142,23 @@ fn replay_step(lane: u32, s: u32, base: u32) {
                 state.phase = PHASE_FAILED;
             } else {
                 if policy {
-                    let pace = learning_rate(s, state.trial);
-                    backward(lane, skill, s, base, child, delta, pace);
+                    backward(lane, skill, child, delta, learning_rate(skill, state.trial));
                     state.updates += 1u;
                 }
-                state.next_best = select(outlook.best, aim, inner);
-                state.next_return = select(outlook.best, aim, policy || inner);
+                state.next_best = select(found.best, target_value, inner);
+                state.next_return = select(found.best, target_value, policy || inner);
                 state.replay_left = step;
             }
         }
     }
 }
 
-fn sound_weights(lane: u32, base: u32) -> bool {
+// Whether all weights of the skill in training are numbers.
+fn weights_are_finite(lane: u32) -> bool {
     let skill = state.skill;
     var wild = 0u;
     for (var number = 0u; number < skills[skill].nets; number++) {
-        let net = net_of(skill, base, number);
+        let net = net_offset(skill, number);
         for (var row = 0u; row < skills[skill].rows; row++) {
             wild |= u32(!is_number(nets[net + row * LANES + lane]));
         }

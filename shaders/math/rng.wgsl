@@ -42,7 +42,7 @@ fn draw(stream: Stream, draw: u32) -> vec4<u32> {
 }
 
 // The random words of one primitive step: entry `i` holds draw number `i`. Rays share the first six draws, a word
-// each, and so do the light's bearings theirs. The rest is named in `skill/observe`.
+// each, and so do the light's bearings theirs. The rest is named in `env/observe`.
 var<workgroup> random: array<vec4<u32>, LANES>;
 
 fn draw_step(lane: u32, stream: Stream) {
@@ -52,7 +52,7 @@ fn draw_step(lane: u32, stream: Stream) {
 }
 
 // The word of bearing `b`, whose six draws begin with number `first`: word `b` / 6 of draw `b` % 6.
-fn bearing_words(first: u32, b: u32) -> u32 {
+fn bearing_word(first: u32, b: u32) -> u32 {
     return random[first + b % 6u][b / 6u];
 }
 

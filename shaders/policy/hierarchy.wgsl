@@ -1,79 +1,51 @@
-// One step of a robot that pursues a skill: it senses, remembers, asks the skills of the tree, and moves.
+// From the skills of a tree down to an action.
 //
 // The choice is made anew on every primitive step at every level (paper, section VI.A); persistence decides how
-// free it is. Every lane keeps the same copy of the robot.
+// free it is.
 
-// The robot, between the kernel's reading of it and its writing it back.
-var<private> agent: Agent;
-// Where the learner's params begin: one record per skill.
+// Where the learner's hyper-parameters begin: one record per skill.
 var<private> params_base: u32;
-// Greatest Q-value of each watched skill.
-var<workgroup> value: array<f32, MAX_SKILLS>;
-// All Q-values of each watched skill.
-var<workgroup> kept: array<array<f32, MAX_CHILDREN>, MAX_SKILLS>;
+// All Q-values of each skill that some applicability depends on.
+var<workgroup> kept_q: array<array<f32, MAX_CHILDREN>, MAX_SKILLS>;
 
-fn place(pose: Pose) {
-    agent = Agent();
-    agent.x = pose.x;
-    agent.y = pose.y;
-    agent.heading = pose.heading;
-    agent.origin = room_of(pose.x, pose.y);
-    agent.blocked = NO_ACTION;
-    agent.action = NO_ACTION;
-    agent.discount = 1.0f;
-    for (var n = 0u; n < MAX_SKILLS; n++) {
-        agent.run[n] = IDLE;
-    }
-}
-
-fn sense(lane: u32, s: u32) {
-    let terms = params[s].noise;
-    observe(lane, agent.x, agent.y, agent.heading, agent.bumpers, terms);
-    agent.events |= following_wall(params[s].beside_near, params[s].beside_far, agent.action, agent.events);
-    agent.earned = reward_of(s, agent.events);
-    agent.reward = agent.reward + agent.earned;
-    agent.returned = agent.returned + agent.discount * agent.earned;
-    agent.discount = select(flush(agent.discount * params[s].gamma), 1.0f, agent.step == 0u);
-    remember(s);
-}
-
-fn think(lane: u32, base: u32, n: u32) {
-    if skills[n].record_words > BASE_WORDS {
-        extend(lane, n);
+// Q-values of skill `n`, from its nets or from the planner's table.
+fn q_values(lane: u32, n: u32) {
+    if skills[n].record_words > ELEMENTARY_STEP_WORDS {
+        write_high_level(lane, n);
     }
     if skills[n].planned > 0u {
-        consult(lane, n);
+        planned_values(lane, n);
     } else {
         encode(lane, n, skills[n].mirrored == 1u);
-        forward(lane, n, params_base + n, base);
+        forward(lane, n);
     }
 }
 
-fn watch(lane: u32, base: u32, root: u32) {
-    let watched = skills[root].watched;
+// Asks the skills below the root whose values somebody's applicability depends on, children first.
+fn value_children(lane: u32, root: u32) {
     for (var n = 0u; n < root; n++) {
-        if ((watched >> n) & 1u) == 1u {
-            think(lane, base, n);
+        if ((skills[root].watched >> n) & 1u) == 1u {
+            q_values(lane, n);
             var best = -2.0f;
             for (var child = 0u; child < skills[n].children; child++) {
                 let worth = q[child];
                 best = select(best, worth, worth > best);
                 if lane == child {
-                    kept[n][child] = worth;
+                    kept_q[n][child] = worth;
                 }
             }
             if lane == 0u {
-                value[n] = best;
+                best_value[n] = best;
             }
-            // Nor does any lane think on before all have read the Q-values.
+            // Nor does any lane go on before all have read the Q-values.
             workgroupBarrier();
         }
     }
 }
 
-fn descend(lane: u32, base: u32, root: u32, child: u32) -> u32 {
-    let watched = skills[root].watched;
-    let heat = params[params_base + root].child_inverse_temperature;
+// Lets the skills below the root choose, down to an action, once the root has chosen `child`.
+fn descend_to_action(lane: u32, root: u32, child: u32) -> u32 {
+    let inverse_temperature = params[params_base + root].child_inverse_temperature;
     var code = skills[root].child[child];
     var asked = 1u << root;
     var last = root;
@@ -82,47 +54,26 @@ fn descend(lane: u32, base: u32, root: u32, child: u32) -> u32 {
             break;
         }
         let n = code - SKILL_CODE;
-        if ((watched >> n) & 1u) == 1u {
+        if ((skills[root].watched >> n) & 1u) == 1u {
             if lane < skills[n].children {
-                q[lane] = kept[n][lane];
+                q[lane] = kept_q[n][lane];
             }
             workgroupBarrier();
-            if skills[n].record_words > BASE_WORDS {
-                extend(lane, n);
+            if skills[n].record_words > ELEMENTARY_STEP_WORDS {
+                write_high_level(lane, n);
             }
         } else {
-            think(lane, base, n);
+            q_values(lane, n);
         }
-        let own = params_base + n;
-        let found = options(n, params[own].persist_tests == 1u);
+        let choices = action_mask(n, params[params_base + n].persist_tests == 1u);
         let word = random[DRAW_CHOICE + depth].x;
-        let chosen = choose(lane, own, skills[n].children, found.allowed, heat, false, word);
-        commit(n, chosen, found);
+        let chosen = choose(lane, n, choices.allowed, inverse_temperature, false, word);
+        commit(n, chosen, choices);
         code = skills[n].child[chosen];
         asked |= 1u << n;
         last = n;
     }
-    rest(root, asked);
+    stop_unasked(root, asked);
     agent.masks = params[params_base + last].mask_blocked;
     return code;
-}
-
-fn execute(lane: u32, s: u32, action: u32) {
-    let terms = params[s].noise;
-    let slip = terms.actuator * noise(terms.kind, random[DRAW_ACTUATOR].x, random[DRAW_ACTUATOR].y) + 1.0f;
-    let moved = move_body(lane, agent.x, agent.y, agent.heading, action, slip);
-    let passed = passed_door(agent.origin, moved.x, moved.y);
-    let hit = (moved.events & COLLISION) == COLLISION;
-    agent.x = moved.x;
-    agent.y = moved.y;
-    agent.heading = moved.heading;
-    agent.bumpers = moved.bumpers;
-    if passed == PASSED_DOOR {
-        agent.origin = room_of(moved.x, moved.y);
-    }
-    agent.blocked = select(NO_ACTION, action, hit && agent.masks == 1u);
-    agent.action = action;
-    agent.events = moved.events | passed;
-    agent.step += 1u;
-    agent.collisions += u32(hit);
 }

@@ -1,43 +1,15 @@
-// Which children are applicable, and which may be chosen now: the Applicability Rule and the Persistence Rule
-// (paper, section VI.B).
+// Which children may be chosen now: the Persistence Rule (paper, section VI.B).
 
-const IDLE: u32 = NO_CHILD;
-
-struct Options {
+// What a skill may choose at one step.
+struct Choices {
     applicable: u32,
-    choices: u32,
+    // What a free choice is made among; where the running child may not be left, that child as well.
+    offered: u32,
     allowed: u32,
     decision: u32,
 }
 
-fn extend(lane: u32, n: u32) {
-    let s = params_base + n;
-    var applicable = 0u;
-    for (var child = 0u; child < skills[n].children; child++) {
-        let code = skills[n].child[child];
-        let known = code >= SKILL_CODE && ((skills[n].thresholded >> child) & 1u) == 1u;
-        var worth = 0.0f;
-        if known {
-            worth = value[code - SKILL_CODE];
-        }
-        let above = !known || worth > params[s].threshold[child];
-        applicable |= select(0u, 1u << child, above);
-        if lane == child {
-            record[VALUE_WORD + child] = bitcast<u32>(worth);
-        }
-    }
-    if lane >= skills[n].children && lane < MAX_CHILDREN {
-        record[VALUE_WORD + lane] = 0u;
-    }
-    let running = agent.run[n] & 0xffu;
-    let room = room_of(agent.x, agent.y);
-    if lane == 0u {
-        record[BASE_WORDS] = running | (applicable << 8u) | (room << 16u);
-    }
-    recall(lane);
-}
-
-fn options(n: u32, persist: bool) -> Options {
+fn action_mask(n: u32, persist: bool) -> Choices {
     let s = params_base + n;
     let all = (1u << skills[n].children) - 1u;
     var open = 0u;
@@ -51,13 +23,11 @@ fn options(n: u32, persist: bool) -> Options {
         actions |= select(0u, 1u << child, code < SKILL_CODE);
     }
     let high = actions != all;
-    let applicable = select(all, (record[BASE_WORDS] >> 8u) & 0xffu, high);
+    let applicable = select(all, high_level_applicable(record[STEP_HIGH_LEVEL]), high);
     let suited = select(open, applicable & open, params[s].applicability == 1u);
     let choices = select(open, suited, suited != 0u);
-    let run = agent.run[n];
-    let running = run & 0xffu;
-    let since = (run >> 8u) & 0xffu;
-    let before = (run >> 16u) & 0xffu;
+    let running = run_child(agent.run[n]);
+    let before = run_applicable(agent.run[n]);
     var own = 0u;
     var code = NO_ACTION;
     if running < MAX_CHILDREN {
@@ -66,29 +36,31 @@ fn options(n: u32, persist: bool) -> Options {
     }
     // An action ends by itself; a skill ends where its goal is achieved.
     let skill = own != 0u && code >= SKILL_CODE;
-    var ends = 0u;
+    var goal = 0u;
     if skill {
-        ends = skills[code - SKILL_CODE].ends;
+        goal = skills[code - SKILL_CODE].ends;
     }
-    let achieved = (agent.events & ends) != 0u;
+    let achieved = (agent.events & goal) != 0u;
     let fresh = (applicable & ~before & ~own) != 0u;
     let lost = params[s].interrupt == 1u && (applicable & own) == 0u;
-    let late = params[s].decision_steps > 0u && since >= params[s].decision_steps;
+    let late = params[s].decision_steps > 0u && run_steps(agent.run[n]) >= params[s].decision_steps;
     let free = !persist || !skill || achieved || fresh || lost || late;
     // What runs on is an alternative, even where it is no longer applicable: the step is learned with it.
     let offered = select(choices | own, choices, free);
-    return Options(applicable, offered, select(own, choices, free), u32(free));
+    let allowed = select(own, choices, free);
+    return Choices(applicable, offered, allowed, u32(free));
 }
 
-fn commit(n: u32, child: u32, options: Options) {
-    let since = (agent.run[n] >> 8u) & 0xffu;
-    let counted = select(since + 1u, 1u, options.decision == 1u);
+fn commit(n: u32, child: u32, choices: Choices) {
+    let steps = run_steps(agent.run[n]);
+    let counted = select(steps + 1u, 1u, choices.decision == 1u);
     let held = select(255u, counted, counted < 255u);
-    agent.run[n] = child | (held << 8u) | (options.applicable << 16u);
+    agent.run[n] = run_word(child, held, choices.applicable);
 }
 
-fn rest(root: u32, asked: u32) {
+// Skills that were not asked at this step no longer run.
+fn stop_unasked(root: u32, asked: u32) {
     for (var n = 0u; n < root; n++) {
-        agent.run[n] = select(IDLE, agent.run[n], ((asked >> n) & 1u) == 1u);
+        agent.run[n] = select(NO_CHILD, agent.run[n], ((asked >> n) & 1u) == 1u);
     }
 }

@@ -1,13 +1,13 @@
 // The planner in a skill's place: privileged, for it knows floor plan and pose. A baseline.
 //
-// Its table in the tables: columns, rows, rooms of origin, 1 / pitch, then one word for each origin, row, column
+// It stands in the lookup tables: columns, rows, rooms of origin, 1 / pitch, then one word for each origin, row, column
 // and heading: the value, with the child's number in its lowest three bits.
 
 const TABLE_HEADER: u32 = 4u;
 const TABLE_HEADINGS: u32 = 24u;
 const TABLE_GAP: f32 = 1.0f;
 
-fn consult(lane: u32, n: u32) {
+fn planned_values(lane: u32, n: u32) {
     let table = skills[n].planned;
     let columns = tables[table];
     let rows = tables[table + 1u];

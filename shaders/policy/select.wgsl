@@ -3,24 +3,23 @@
 //
 // Sets of children are bits: bit c stands for child c.
 
-const CHOICE_LEARNED: u32 = 0u;
-const CHOICE_RANDOM: u32 = 1u;
-const NO_CHILD: u32 = 255u;
+// Boltzmann weight of every child, 0 where it is not available.
+var<workgroup> weights: array<f32, MAX_CHILDREN>;
 
-var<workgroup> odds: array<f32, MAX_CHILDREN>;
-
-struct Outlook {
+// What the Q-values say about the allowed children.
+struct Boltzmann {
     best: f32,
     greedy: u32,
     total: f32,
 }
 
-fn inverse_temperature(s: u32, trial: u32) -> f32 {
+fn inverse_temperature(skill: u32, trial: u32) -> f32 {
+    let s = params_base + skill;
     let risen = select(params[s].inverse_temperature_trials, trial, trial < params[s].inverse_temperature_trials);
     return params[s].inverse_temperature_slope * f32(risen) + params[s].inverse_temperature_start;
 }
 
-fn weigh(lane: u32, children: u32, allowed: u32, inverse_temperature: f32) -> Outlook {
+fn boltzmann(lane: u32, children: u32, allowed: u32, inverse_temperature: f32) -> Boltzmann {
     var best = -2.0f;
     var greedy = 0u;
     for (var child = 0u; child < children; child++) {
@@ -32,23 +31,23 @@ fn weigh(lane: u32, children: u32, allowed: u32, inverse_temperature: f32) -> Ou
     if lane < MAX_CHILDREN {
         let available = lane < children && ((allowed >> lane) & 1u) == 1u;
         let weight = exponential(inverse_temperature * (q[lane] - best));
-        odds[lane] = select(0.0f, weight, available);
+        weights[lane] = select(0.0f, weight, available);
     }
     workgroupBarrier();
-    var total = odds[0];
+    var total = weights[0];
     for (var child = 1u; child < MAX_CHILDREN; child++) {
-        total = total + odds[child];
+        total = total + weights[child];
     }
-    return Outlook(best, greedy, total);
+    return Boltzmann(best, greedy, total);
 }
 
-fn pick(outlook: Outlook, word: u32) -> u32 {
-    let mark = unit(word) * outlook.total;
+fn sample(found: Boltzmann, word: u32) -> u32 {
+    let mark = unit(word) * found.total;
     var sum = 0.0f;
-    var chosen = outlook.greedy;
+    var chosen = found.greedy;
     var open = true;
     for (var child = 0u; child < MAX_CHILDREN; child++) {
-        sum = sum + odds[child];
+        sum = sum + weights[child];
         let here = open && mark < sum;
         chosen = select(chosen, child, here);
         open = open && !here;
@@ -56,12 +55,13 @@ fn pick(outlook: Outlook, word: u32) -> u32 {
     return chosen;
 }
 
-fn choose(lane: u32, s: u32, children: u32, allowed: u32, inverse_temperature: f32, greedy: bool, word: u32) -> u32 {
-    let even = params[s].choice != CHOICE_LEARNED;
-    let outlook = weigh(lane, children, allowed, select(inverse_temperature, 0.0f, even));
-    let drawn = pick(outlook, word);
+fn choose(lane: u32, skill: u32, allowed: u32, inverse_temperature: f32, greedy: bool, word: u32) -> u32 {
+    let choice = params[params_base + skill].choice;
+    let even = choice != CHOICE_LEARNED;
+    let found = boltzmann(lane, skills[skill].children, allowed, select(inverse_temperature, 0.0f, even));
+    let drawn = sample(found, word);
     let first = countTrailingZeros(allowed);
-    let learned = select(drawn, outlook.greedy, greedy);
-    let other = select(first, drawn, params[s].choice == CHOICE_RANDOM);
+    let learned = select(drawn, found.greedy, greedy);
+    let other = select(first, drawn, choice == CHOICE_RANDOM);
     return select(learned, other, even);
 }

@@ -6,14 +6,14 @@
 pub mod cpu;
 #[cfg(feature = "gpu")]
 pub mod gpu;
+pub mod host;
 pub mod memory;
 pub mod open;
 pub mod parity;
+pub mod reference;
 
 use crate::env::workgroup::CohortData;
-use crate::kernels::evaluate::STATE_FRESH;
-use crate::layout::phase::{PHASE_DONE, PHASE_START};
-use crate::layout::{Episode, HyperParams, LearnerState, Robot};
+use crate::layout::{EPISODE_FRESH, Episode, HyperParams, LearnerState, PHASE_DONE, PHASE_START, Robot};
 use std::ops::Range;
 
 /// All memory of the learners that train together.
@@ -73,7 +73,7 @@ pub struct Test {
 /// Test trials that have not begun. A field that the kernel leaves unset shows as a NaN.
 fn fresh(count: usize) -> Vec<Episode> {
     let unset: Episode = bytemuck::cast([parity::UNWRITTEN; size_of::<Episode>() / 4]);
-    vec![Episode { state: STATE_FRESH, ..unset }; count]
+    vec![Episode { state: EPISODE_FRESH, ..unset }; count]
 }
 
 /// Executes kernels.

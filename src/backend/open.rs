@@ -1,8 +1,9 @@
 //! Opens the backend that a user asks for. The one place that knows which backends there are.
 
-use super::cpu::CpuBackend;
+use super::cpu::cpu_backend;
 #[cfg(feature = "gpu")]
 use super::gpu::{GpuBackend, GpuOptions, adapter, device::is_software};
+use super::reference::reference_backend;
 use super::{Backend, BackendError};
 
 /// Where to execute the kernels.
@@ -13,6 +14,8 @@ pub enum BackendChoice {
     Auto,
     /// The CPU, on all cores.
     Cpu,
+    /// The shaders' plain twins, on all cores: slow, and as the shaders are written.
+    Reference,
     /// A GPU; a software adapter if there is no other.
     Gpu,
 }
@@ -45,11 +48,12 @@ impl BackendOptions {
                 self.cpu()
             }),
             BackendChoice::Cpu => self.cpu(),
+            BackendChoice::Reference => Ok(Box::new(reference_backend(self.threads, self.iterations)?)),
         }
     }
 
     fn cpu(&self) -> Result<Box<dyn Backend>, BackendError> {
-        Ok(Box::new(CpuBackend::new(self.threads, self.iterations)?))
+        Ok(Box::new(cpu_backend(self.threads, self.iterations)?))
     }
 
     #[cfg(feature = "gpu")]

@@ -6,51 +6,13 @@
 //! lessons and rows, word by word.
 
 use super::Cohort;
-use crate::layout::phase::PHASE_FAILED;
-use crate::layout::{
-    Episode, LANES, LESSON_HEADER, MEMORY_WORD, RECORD_WORDS, ROW_WORDS, Robot, SkillShape, layout_of,
-};
-use crate::qnet::backward::CLOCK_SECOND;
-use crate::qnet::forward::net_of;
+use crate::layout::{Episode, LANES, LESSON_HEADER_WORDS, PHASE_FAILED, Robot, SkillShape, TrialRecord, layout_of};
+use crate::qnet::optimiser::adam::BETA2_POWER;
 use std::fmt;
 
 /// What outputs hold before a kernel writes them: a NaN that no arithmetic makes.
 pub const UNWRITTEN: u32 = 0xffff_ffff;
 
-/// Names of the words that open a lesson.
-const HEADER: [&str; LESSON_HEADER] = ["steps", "end", "reward", "collisions"];
-/// Names of the words of a recorded step.
-const RECORD: [&str; RECORD_WORDS] = [
-    "sonar 0 to 3",
-    "sonar 4 to 7",
-    "sonar 8 to 11",
-    "sonar 12 to 15",
-    "sonar 16 to 19",
-    "sonar 20 to 23",
-    "light and bumpers",
-    "compass",
-    "choice and events",
-    "reward",
-    "running, applicable and room",
-    "mean range east and west",
-    "mean range north and south",
-    "trace of the light",
-    "trace of a door",
-    "cosine of that door",
-    "sine of that door",
-    "value of child 0",
-    "value of child 1",
-    "value of child 2",
-    "value of child 3",
-    "value of child 4",
-    "value of child 5",
-    "value of child 6",
-    "value of child 7",
-];
-/// Names of the columns of the trial table.
-const COLUMNS: [&str; ROW_WORDS] = ["skill", "trial", "actions", "steps", "reward", "success", "collisions", "taught"];
-/// Those among the names above that stand for an f32. So do a record's words from [`MEMORY_WORD`] on.
-const NUMBERS: [&str; 2] = ["compass", "reward"];
 /// What a net's three slabs hold: the weights, and what the optimiser keeps of each.
 const SLABS: [&str; 3] = ["", "first moment of the ", "second moment of the "];
 
@@ -115,9 +77,7 @@ fn field_of(layout: &str, word: usize) -> Place {
         return (format!("word {word}"), false);
     };
     let within = word - offset / 4;
-    if *name == "record" {
-        record_word(within)
-    } else if layout_of(wgsl).is_some() {
+    if layout_of(wgsl).is_some() {
         let (field, number) = field_of(wgsl, within);
         (format!("{name}.{field}"), number)
     } else if wgsl.starts_with("array") {
@@ -125,10 +85,6 @@ fn field_of(layout: &str, word: usize) -> Place {
     } else {
         ((*name).to_owned(), *wgsl == "f32")
     }
-}
-
-fn record_word(word: usize) -> Place {
-    (format!("record word {word} ({})", RECORD[word]), word >= MEMORY_WORD || NUMBERS.contains(&RECORD[word]))
 }
 
 /// Word `word` of a learner's nets. A mirrored skill has none of its own.
@@ -140,10 +96,10 @@ fn nets_word(skills: &[SkillShape], word: usize) -> Place {
     let shared = plan.outputs > 1;
     let whose = |net: usize| if shared { "all children".to_owned() } else { format!("child {net}") };
     let text = if let Some(lane) = word.checked_sub(plan.clock_offset as usize) {
-        let (order, net) = if lane < CLOCK_SECOND as usize { ("first", lane) } else { ("second", lane - 16) };
+        let (order, net) = if lane < BETA2_POWER { ("first", lane) } else { ("second", lane - BETA2_POWER) };
         format!("{}, clock of {order} moments", whose(net))
     } else {
-        let start = |net: &u32| net_of(plan, 0, *net) as usize;
+        let start = |net: &u32| plan.net_offset(*net);
         let net = (0..plan.nets).rfind(|net| start(net) <= word).unwrap_or(0);
         let within = word.saturating_sub(start(&net));
         let slab = plan.rows as usize * LANES;
@@ -172,11 +128,11 @@ fn lessons_word(skills: &[SkillShape], word: usize) -> Place {
     let within = word - plan.memory_offset as usize;
     let stride = (plan.lesson_stride as usize).max(1);
     let (slot, within) = (within / stride, within % stride);
-    let (text, number) = match within.checked_sub(LESSON_HEADER) {
-        None => (HEADER[within].to_owned(), NUMBERS.contains(&HEADER[within])),
+    let (text, number) = match within.checked_sub(LESSON_HEADER_WORDS) {
+        None => field_of("LessonHeader", within),
         Some(within) => {
             let words = plan.record_words as usize;
-            let (text, number) = record_word(within % words);
+            let (text, number) = field_of("Step", within % words);
             (format!("step {}, {text}", within / words), number)
         }
     };
@@ -185,14 +141,15 @@ fn lessons_word(skills: &[SkillShape], word: usize) -> Place {
 
 /// Word `word` of a learner's trial table.
 fn rows_word(word: usize) -> Place {
-    let column = COLUMNS[word % ROW_WORDS];
-    (format!("rows word {word} (row {}, {column})", word / ROW_WORDS), NUMBERS.contains(&column))
+    let words = size_of::<TrialRecord>() / 4;
+    let (column, number) = field_of("TrialRecord", word % words);
+    (format!("rows word {word} (row {}, {column})", word / words), number)
 }
 
-/// The first difference between two cohorts after kernel `advance`. Words of lessons and rows that are
+/// The first difference between two cohorts after kernel `train`. Words of lessons and rows that are
 /// [`UNWRITTEN`] on both sides are equal.
 pub fn advance(left: &Cohort, right: &Cohort) -> Option<Difference> {
-    const KERNEL: &str = "advance";
+    const KERNEL: &str = "train";
     let strides = |cohort: &Cohort| [cohort.skills, cohort.nets_stride, cohort.lessons_stride, cohort.rows_stride];
     let names = ["skills", "words of nets", "words of lessons", "words of rows"];
     let mut strides = names.iter().zip(strides(left)).zip(strides(right));

@@ -3,7 +3,7 @@
 use super::BenchError;
 use super::timing::cores;
 use crate::backend::Backend;
-use crate::backend::cpu::CpuBackend;
+use crate::backend::cpu::cpu_backend;
 use crate::backend::open::{OpenAdapter, open_adapters};
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
@@ -69,7 +69,7 @@ impl Executor {
     }
 
     fn cpu(threads: usize) -> Result<Self, BenchError> {
-        let backend = Box::new(CpuBackend::new(threads, None)?);
+        let backend = Box::new(cpu_backend(threads, None)?);
         Ok(Self::new(&format!("cpu-{threads}"), ExecutorKind::Cpu, threads, backend))
     }
 

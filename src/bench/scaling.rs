@@ -4,7 +4,7 @@ use super::BenchError;
 use super::embedded_configs::{DOCKING, embedded_plan};
 use super::result::BenchOrigin;
 use super::timing::{Elapsed, Spread, cores, timed};
-use crate::backend::cpu::CpuBackend;
+use crate::backend::cpu::cpu_backend;
 use crate::train::batch::train;
 use crate::train::batch_group::{LearnerId, groups};
 use serde::{Deserialize, Serialize};
@@ -68,7 +68,7 @@ pub fn scaling(
     let plan = embedded_plan(DOCKING, &SET, SEEDS)?;
     let group = groups(&plan)?.swap_remove(0);
     let seeds = group.learners(&plan);
-    let mut backend = CpuBackend::new(cores(), None)?;
+    let mut backend = cpu_backend(cores(), None)?;
     let mut taken: Vec<Vec<Elapsed>> = counts.iter().map(|_| Vec::new()).collect();
     // The first round touches all memory for the first time.
     for sample in 0..=samples {

@@ -3,11 +3,10 @@
 use super::BenchError;
 use crate::backend::{Backend, BackendError, Cohort, Stop};
 use crate::config::plan::Plan;
-use crate::env::workgroup::Learner;
-use crate::layout::{HyperParams, LearnerState, SkillShape};
-use crate::learn::td_lambda::taught_lesson;
+use crate::env::workgroup::Workgroup;
+use crate::kernels::plain::PLAIN;
+use crate::layout::{HyperParams, SkillShape};
 use crate::train::batch_group::groups;
-use bytemuck::Zeroable;
 
 /// The learners' memory before their first replay.
 #[derive(Debug)]
@@ -38,10 +37,8 @@ impl TaughtReplay {
 
     /// Word of the bank at which taught lesson `number` of a learner stands.
     pub fn lesson_offset(&self, learner: usize, number: u32) -> usize {
-        let mut state: LearnerState = LearnerState::zeroed();
-        let (shared, params) = (&self.cohort.shared, std::slice::from_ref(self.params(learner)));
-        let learner = Learner { shared, params, state: &mut state, nets: &mut [], lessons: &mut [], rows: &mut [] };
-        taught_lesson(&learner, number) as usize
+        let params = std::slice::from_ref(self.params(learner));
+        Workgroup::new(&self.cohort.shared, params, &PLAIN).taught_lesson(number) as usize
     }
 
     /// Transitions that all learners replay in one pass over their lessons.

@@ -2,7 +2,7 @@
 
 use super::console::print;
 use super::{CliError, count};
-use crate::backend::cpu::CpuBackend;
+use crate::backend::cpu::cpu_backend;
 use crate::backend::open::open_adapters;
 use crate::config::{Overrides, load};
 use crate::train::parity::{Sample, Work};
@@ -16,7 +16,7 @@ pub(super) fn check(config: &Path, learners: usize) -> Result<(), CliError> {
     let plan = load(config, &Overrides::default())?;
     let adapters = open_adapters()?;
     let work = Work::new(&plan, learners)?;
-    let expected = work.run(&mut CpuBackend::new(0, None)?)?;
+    let expected = work.run(&mut cpu_backend(0, None)?)?;
     let (mut differing, count) = (0, adapters.len());
     for adapter in adapters {
         let line = match adapter.backend.and_then(|mut gpu| work.run(gpu.as_mut())) {

@@ -3,7 +3,7 @@
 use super::console::print;
 use super::{CliError, exit_codes};
 use crate::backend::Backend;
-use crate::backend::cpu::CpuBackend;
+use crate::backend::cpu::cpu_backend;
 use crate::config::plan::Action;
 use crate::config::{Overrides, load};
 use crate::env::motion::{COLLISION, DOCKED};
@@ -78,7 +78,7 @@ pub(super) fn probe(arguments: &ProbeArguments) -> Result<(), CliError> {
     let actions = actions_of(&arguments.actions)?;
     let noise = if arguments.noise == Noisy::Off { SILENT } else { plan.arms[0].noise };
     let shared = floor_only(plan.world());
-    let mut backend = CpuBackend::new(1, None)?;
+    let mut backend = cpu_backend(1, None)?;
     let mut robot = robot_at(pose, &noise, plan.run_seed, arguments.seed);
     for action in std::iter::once(None).chain(actions.into_iter().map(Some)) {
         if let Some(action) = action {

@@ -132,5 +132,3 @@ pub const PROBABILITY: Bounds = Bounds::inside(0.0, 1.0);
 pub const PROBABILITY_DEFAULT: f32 = 0.5;
 /// Decay of the near sonar coding, inches.
 pub const SONAR_SCALE: Bounds = Bounds::between(1.0, 1000.0);
-/// Decay of `sonar` and `sonar-compass` without a number, inches. Ours.
-pub const SONAR_DEFAULT: f32 = 60.0;

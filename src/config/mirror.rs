@@ -1,30 +1,25 @@
 //! Skills that are the mirror image of another one and use its nets.
 
-use super::inputs;
-use super::plan::{Child, Event, Input, Skill};
+use super::plan::{Child, Event, Skill};
 use crate::toml::error::ConfigError;
 use crate::toml::reader::Item;
-
-/// Whether a mirror shows an input as another reading of the same kind.
-fn mirrored(input: &Input) -> bool {
-    matches!(input, Input::Sonar { .. } | Input::SonarFar | Input::Light | Input::Bumpers)
-}
 
 /// Refuses replays seen in a mirror that would not show the same skill; `item` is where they are asked for.
 pub(super) fn check_replays(skill: &Skill, item: &Item<'_>) -> Result<(), ConfigError> {
     let problem = if skill.is_high() {
         Some("which chooses among skills".to_owned())
-    } else if let Some(input) = skill.inputs.iter().find(|input| !mirrored(input)) {
-        Some(format!("whose input `{}` has no mirror image", inputs::name(*input)))
+    } else if let Some(input) = skill.inputs.iter().find(|input| !input.is_mirrored()) {
+        Some(format!("whose input `{}` has no mirror image", input.name()))
     } else if let Some(Child::Action(turn)) = skill.children.iter().find(|c| !skill.children.contains(&c.mirrored())) {
         Some(format!("which has no turn the other way than `{}`", turn.name()))
     } else {
         let differs = |seen: &Event| {
             let ends = |event: Event| skill.ends & event.bit() != 0;
-            skill.reward[*seen as usize] != skill.reward[event(*seen) as usize] || ends(*seen) != ends(event(*seen))
+            skill.reward[*seen as usize] != skill.reward[seen.mirrored() as usize]
+                || ends(*seen) != ends(seen.mirrored())
         };
         let side = Event::ALL.into_iter().find(differs);
-        side.map(|seen| format!("which sees more in `{}` than in `{}`", seen.name(), event(seen).name()))
+        side.map(|seen| format!("which sees more in `{}` than in `{}`", seen.name(), seen.mirrored().name()))
     };
     let Some(problem) = problem else { return Ok(()) };
     let message = format!("lessons of `{}`, {problem}, cannot be seen in a mirror", skill.name);
@@ -33,11 +28,11 @@ pub(super) fn check_replays(skill: &Skill, item: &Item<'_>) -> Result<(), Config
 
 /// The mirror image of `source`, which is the arm's skill of that number; `item` is where it is named.
 pub(super) fn image(name: &str, (number, source): (usize, &Skill), item: &Item<'_>) -> Result<Skill, ConfigError> {
-    if let Some(input) = source.inputs.iter().find(|input| !mirrored(input)) {
+    if let Some(input) = source.inputs.iter().find(|input| !input.is_mirrored()) {
         let message = format!(
             "`{name}` cannot be the mirror image of `{}`, whose input `{}` has none",
             source.name,
-            inputs::name(*input)
+            input.name()
         );
         let hint = "only sonar, sonar-far, light and bumpers have one; drop that input, or write mirror = false and \
                     give this skill keys of its own";
@@ -46,9 +41,9 @@ pub(super) fn image(name: &str, (number, source): (usize, &Skill), item: &Item<'
     let mut reward = [0.0; Event::ALL.len()];
     let mut ends = 0;
     for seen in Event::ALL {
-        reward[event(seen) as usize] = source.reward[seen as usize];
+        reward[seen.mirrored() as usize] = source.reward[seen as usize];
         if source.ends & seen.bit() != 0 {
-            ends |= event(seen).bit();
+            ends |= seen.mirrored().bit();
         }
     }
     Ok(Skill {
@@ -62,12 +57,4 @@ pub(super) fn image(name: &str, (number, source): (usize, &Skill), item: &Item<'
         trials: 0,
         ..source.clone()
     })
-}
-
-fn event(seen: Event) -> Event {
-    match seen {
-        Event::BesideRight => Event::BesideLeft,
-        Event::BesideLeft => Event::BesideRight,
-        Event::Docked | Event::Collision | Event::PassedDoor => seen,
-    }
 }

@@ -6,7 +6,8 @@
 mod skill;
 mod sweep;
 
-pub use skill::{Action, Child, Choice, Event, Input, Persistence, Skill, Threshold};
+pub use crate::layout::{Action, Event, Input};
+pub use skill::{Child, Choice, Persistence, Skill, Threshold};
 pub use sweep::{Axis, AxisValue, Design, Scale, Sweep};
 
 use crate::world::World;

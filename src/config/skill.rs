@@ -157,21 +157,12 @@ fn event(name: &str, place: &Place<'_>, world: Option<&World>) -> Result<Event, 
     let Some(code) = names.iter().position(|known| *known == name) else {
         return Err(place(format!("`{name}` is not one of the events"), suggest(name, "events", &names)));
     };
-    match world.and_then(|world| Some((world, lacking(Event::ALL[code], world)?))) {
+    match world.and_then(|world| Some((world, world.lacks(Event::ALL[code].needs())?.name()))) {
         None => Ok(Event::ALL[code]),
         Some((world, lacking)) => {
             let message = format!("`{name}` cannot happen: the world `{}` has no {lacking}", world.name);
             Err(place(message, format!("add {lacking} to the world file, or drop this event")))
         }
-    }
-}
-
-/// What the world would need for the event to happen there, or none if it can.
-pub(super) fn lacking(event: Event, world: &World) -> Option<&'static str> {
-    match event {
-        Event::Docked if world.charger.is_none() => Some("charger"),
-        Event::PassedDoor if world.doors.is_empty() => Some("doors"),
-        _ => None,
     }
 }
 

@@ -2,7 +2,6 @@
 
 use super::arms::small_name;
 use super::plan::{Alteration, Arm, Event, Noise};
-use super::skill::lacking;
 use super::worlds::{Ground, Worlds};
 use super::{keys, robot};
 use crate::toml::document::{Node, Origin};
@@ -78,7 +77,7 @@ fn check_root(ground: Ground<'_>, arm: &Arm, place: &Origin) -> Result<(), Confi
         return Err(place.error(format!("{problem}, where tests of `{}` start", root.name), hint));
     }
     for event in Event::ALL.into_iter().filter(|event| root.ends & event.bit() != 0) {
-        if let Some(lacking) = lacking(event, world) {
+        if let Some(lacking) = world.lacks(event.needs()).map(|part| part.name()) {
             let message = format!("`{}` cannot happen: the world `{}` has no {lacking}", event.name(), world.name);
             return Err(place.error(message, format!("add {lacking} to it: tests of `{}` end with this", root.name)));
         }

@@ -3,62 +3,32 @@
 //! Lanes are the segments of the cell's list, then rays. A ray and the opposite one are on the same line; the line
 //! crosses a segment where its two ends lie on different sides of it. Of all crossings the closest counts: closeness,
 //! 1 / distance, is linear in the direction of the ray, and all that depends on the segment alone is worked out once.
-//!
-//! Here a lane is a line and finds what is ahead and behind; in the shader a lane is a ray, and the last twelve take the
-//! negative of their line's closeness. Negation is exact, so the bits are the same. Lines and rays stand at
-//! [`place_of`] their bearing.
 
-use super::segments::{BLOCK, SegmentGrid};
+use super::workgroup::Workgroup;
 use crate::layout::{LANES, RAYS};
 use crate::math::functions::{reciprocal, sin_cos};
 use crate::math::reduce::Lanes;
-use crate::math::rng::place_of;
-use std::hint::black_box;
 
 /// Readings per degree.
 pub const READINGS_PER_DEGREE: f32 = 0.066_666_67;
 /// Longest reading, inches (paper, section III).
 pub const SONAR_LIMIT: f32 = 127.0;
 /// 1 / [`SONAR_LIMIT`].
-const INVERSE_LIMIT: f32 = 0.007_874_016;
+pub const INVERSE_LIMIT: f32 = 0.007_874_016;
 /// Segments whose line passes the robot closer than this, inches, are taken to pass at this distance: they are seen
 /// end on, and f32 cannot tell on which side the robot is.
-const SLIVER: f32 = 1.0e-4;
-
+pub const SLIVER: f32 = 1.0e-4;
+/// Cells of the segment lists per inch.
+pub const CELLS_PER_INCH: f32 = 0.083_333_336;
 /// Lines through the robot: a ray and the opposite one are on the same line.
 pub const LINES: usize = RAYS / 2;
-/// Elements of an array of lines: a vector's, [`LINES`] of them in use. What the others hold means nothing.
-pub const LINE_LANES: usize = 16;
-/// One f32 for each line.
-pub type Lines = [f32; LINE_LANES];
 
-/// Sines and cosines of the lines' bearings, straight ahead being 0. Read through `black_box`: a compiler that knew the
-/// numbers would work with each by itself.
-static RAY_TABLE: (Lines, Lines) = ray_table();
-
-const fn ray_table() -> (Lines, Lines) {
-    let mut sines = [0.0; LINE_LANES];
-    let mut cosines = [0.0; LINE_LANES];
-    let mut line = 0;
-    while line < LINES {
-        let place = place_of(line);
-        (sines[place], cosines[place]) = sin_cos(line as f32 * 15.0);
-        line += 1;
-    }
-    (sines, cosines)
-}
-
-/// Directions of the first 12 rays of a robot with this heading; bearing 0 straight ahead, then counter-clockwise. The
-/// other 12 look the opposite ways.
+/// Direction of the line of lane `lane`: of its ray, or of the opposite one from ray 12 on.
 #[inline(always)]
-pub fn rays(cosine: f32, sine: f32) -> (Lines, Lines) {
-    let (sines, cosines) = black_box(&RAY_TABLE);
-    let mut ux = [0.0; LINE_LANES];
-    let mut uy = [0.0; LINE_LANES];
-    for lane in 0..LINE_LANES {
-        ux[lane] = cosine * cosines[lane] - sine * sines[lane];
-        uy[lane] = sine * cosines[lane] + cosine * sines[lane];
-    }
+pub fn line_direction(lane: usize, cosine: f32, sine: f32) -> (f32, f32) {
+    let ray = sin_cos((lane % LINES) as f32 * 15.0);
+    let ux = cosine * ray.1 - sine * ray.0;
+    let uy = sine * ray.1 + cosine * ray.0;
     (ux, uy)
 }
 
@@ -66,7 +36,7 @@ pub fn rays(cosine: f32, sine: f32) -> (Lines, Lines) {
 /// direction is (`dx`, `dy`): the distance is `over` / `under`, in lengths of (`ux`, `uy`). `over` is negative
 /// where the line does not cross.
 #[inline(always)]
-#[expect(clippy::too_many_arguments, reason = "the twin of a shader function; four points")]
+#[expect(clippy::too_many_arguments, reason = "four points")]
 pub fn crossing(ax: f32, ay: f32, bx: f32, by: f32, dx: f32, dy: f32, ux: f32, uy: f32) -> (f32, f32) {
     // Sides come from the ends alone, so a ray cannot slip between two segments that share one.
     let side_a = ax * uy - ay * ux;
@@ -78,62 +48,53 @@ pub fn crossing(ax: f32, ay: f32, bx: f32, by: f32, dx: f32, dy: f32, ux: f32, u
     (if crosses { over_signed } else { -1.0 }, under.abs())
 }
 
-/// Distance along each ray to the nearest segment; [`SONAR_LIMIT`], but for rounding, where there is none so close.
-///
-/// What a segment brings goes by way of memory, which `black_box` stands for: from there a number reaches all lanes at
-/// no cost, and out of a vector at that of two more operations.
-#[inline(always)]
-pub fn ranges(floor: &SegmentGrid, x: f32, y: f32, ux: &Lines, uy: &Lines) -> Lanes {
-    let mut ahead = [INVERSE_LIMIT; LINE_LANES];
-    let mut behind = [-INVERSE_LIMIT; LINE_LANES];
-    let (blocks, mut left) = floor.audible(x, y);
-    for block in blocks {
-        let mut ax = [0.0; BLOCK];
-        let mut ay = [0.0; BLOCK];
-        let mut bx = [0.0; BLOCK];
-        let mut by = [0.0; BLOCK];
-        let mut px = [0.0; BLOCK];
-        let mut py = [0.0; BLOCK];
-        for lane in 0..BLOCK {
-            ax[lane] = block.ax[lane] - x;
-            ay[lane] = block.ay[lane] - y;
-            bx[lane] = block.bx[lane] - x;
-            by[lane] = block.by[lane] - y;
-            let dx = block.bx[lane] - block.ax[lane];
-            let dy = block.by[lane] - block.ay[lane];
-            let over = ax[lane] * dy - ay[lane] * dx;
-            let least = SLIVER * block.length[lane];
-            let held = if over.abs() > least { over.abs() } else { least };
-            let inverse = reciprocal(held);
-            let signed = if over < 0.0 { -inverse } else { inverse };
-            px[lane] = dy * signed;
-            py[lane] = dx * signed;
-        }
-        let held = [ax, ay, bx, by, px, py];
-        let [ax, ay, bx, by, px, py] = black_box(&held);
-        for i in 0..left.min(BLOCK) {
-            for lane in 0..LINE_LANES {
-                let side_a = ax[i] * uy[lane] > ay[i] * ux[lane];
-                let side_b = bx[i] * uy[lane] > by[i] * ux[lane];
-                let closeness = ux[lane] * px[i] - uy[lane] * py[i];
-                let seen = if side_a != side_b { closeness } else { 0.0 };
-                ahead[lane] = if seen > ahead[lane] { seen } else { ahead[lane] };
-                behind[lane] = if seen < behind[lane] { seen } else { behind[lane] };
+impl Workgroup<'_> {
+    /// Distance along each ray to the nearest segment; [`SONAR_LIMIT`], but for rounding, where there is none so close.
+    /// (`ux`, `uy`) are the directions of the rays' lines.
+    pub fn ranges(&mut self, x: f32, y: f32, ux: &Lanes, uy: &Lanes) -> Lanes {
+        let column = ((x * CELLS_PER_INCH) as u32).min(self.world.cell_columns - 1);
+        let row = ((y * CELLS_PER_INCH) as u32).min(self.world.cell_rows - 1);
+        let cell = (self.world.cell_starts + row * self.world.cell_columns + column) as usize;
+        let first = self.tables[cell] as usize;
+        let end = self.tables[cell + 1] as usize;
+        let mut closest = [INVERSE_LIMIT; LANES];
+        for block in (first..end).step_by(LANES) {
+            for lane in 0..LANES {
+                if block + lane < end {
+                    let i = self.tables[block + lane] as usize;
+                    let ax = self.world.segment[i].ax - x;
+                    let ay = self.world.segment[i].ay - y;
+                    let bx = self.world.segment[i].bx - x;
+                    let by = self.world.segment[i].by - y;
+                    let dx = self.world.segment[i].bx - self.world.segment[i].ax;
+                    let dy = self.world.segment[i].by - self.world.segment[i].ay;
+                    let over = ax * dy - ay * dx;
+                    let least = SLIVER * self.world.segment[i].length;
+                    let held = if over.abs() > least { over.abs() } else { least };
+                    let inverse = reciprocal(held);
+                    let signed = if over < 0.0 { -inverse } else { inverse };
+                    self.ends[lane] = [ax, ay, bx, by];
+                    self.slopes[lane] = [dy * signed, dx * signed];
+                }
+            }
+            for n in 0..(end - block).min(LANES) {
+                for lane in 0..LANES {
+                    let side_a = self.ends[n][0] * uy[lane] > self.ends[n][1] * ux[lane];
+                    let side_b = self.ends[n][2] * uy[lane] > self.ends[n][3] * ux[lane];
+                    let closeness = ux[lane] * self.slopes[n][0] - uy[lane] * self.slopes[n][1];
+                    let facing = if lane >= LINES { -closeness } else { closeness };
+                    let seen = if side_a != side_b { facing } else { 0.0 };
+                    closest[lane] = if seen > closest[lane] { seen } else { closest[lane] };
+                }
             }
         }
-        left = left.saturating_sub(BLOCK);
+        closest.map(reciprocal)
     }
-    let mut range = [0.0; LANES];
-    for line in 0..LINE_LANES {
-        range[line] = reciprocal(ahead[line]);
-        range[LINE_LANES + line] = reciprocal(-behind[line]);
-    }
-    range
 }
 
 /// Whole inches that the sonar reports for a range that is off by the factor `error`.
 #[inline(always)]
-pub fn reading(range: f32, error: f32) -> u32 {
+pub fn sonar_reading(range: f32, error: f32) -> u32 {
     let noisy = range * error;
     let low = if noisy > 0.0 { noisy } else { 0.0 };
     let bounded = if low < SONAR_LIMIT { low } else { SONAR_LIMIT };

@@ -1,89 +1,63 @@
 //! Kernel `evaluate`: moves a greedy test trial on by a number of steps. The nets are read only.
 //!
-//! Every test of a learner begins from the same starts; the noise differs from test to test. Twin:
-//! `shaders/kernels/evaluate.wgsl`.
+//! Every test of a learner begins from the same starts; the noise differs from test to test.
 
 use crate::env::observe::DRAW_CHOICE;
 use crate::env::reset::start_pose;
-use crate::env::workgroup::{CohortData, Scratch};
-use crate::layout::{Dispatch, Episode, HyperParams};
-use crate::math::rng::{Purpose, Stream, draw, draw_step};
-use crate::policy::hierarchy::{descend, execute, place, sense, think, watch};
-use crate::policy::persistence::{commit, options};
-use crate::policy::select::choose;
+use crate::env::workgroup::Workgroup;
+use crate::layout::{EPISODE_FRESH, EPISODE_RUNNING, EPISODE_TERMINATED, EPISODE_TRUNCATED, Episode};
+use crate::math::rng::{Purpose, Stream, draw};
 
-/// Not begun.
-pub const STATE_FRESH: u32 = 0;
-/// Running.
-pub const STATE_RUNNING: u32 = 1;
-/// Ended with the goal achieved.
-pub const STATE_ACHIEVED: u32 = 2;
-/// Cut at the step limit.
-pub const STATE_CUT: u32 = 3;
-
-/// Puts the robot at the start of test trial `number`.
-#[inline(always)]
-fn begin(episode: &mut Episode, shared: &CohortData, params: &HyperParams, dispatch: &Dispatch, number: u32) {
-    let skill = &shared.skills[dispatch.test_skill as usize];
-    let stream = Stream {
-        key: [params.run_seed, params.learner_seed],
-        skill: dispatch.test_skill,
-        trial: number,
-        step: 0,
-        purpose: Purpose::TestStart as u32,
-    };
-    let pose = start_pose(&shared.tables, skill.tests_offset, skill.tests_count, draw(stream, 0));
-    place(&mut episode.agent, shared, pose);
-    episode.state = STATE_RUNNING;
-    episode.start_x = pose.x;
-    episode.start_y = pose.y;
-}
-
-/// Moves test trial `number` of one learner on by at most `dispatch.iterations` steps. `params` are the learner's, one
-/// record per skill.
-#[inline(always)]
-pub fn evaluate(
-    episode: &mut Episode,
-    shared: &CohortData,
-    params: &[HyperParams],
-    nets: &[f32],
-    dispatch: &Dispatch,
-    number: u32,
-) {
-    let mut scratch = Scratch::default();
-    let root = dispatch.test_skill;
-    let skill = &shared.skills[root as usize];
-    let own = &params[root as usize];
-    let base = 0;
-    if episode.state == STATE_FRESH {
-        begin(episode, shared, own, dispatch, number);
+impl Workgroup<'_> {
+    /// A stream of the random numbers of a test.
+    fn test_stream(&self, skill: u32, number: u32, step: u32, purpose: Purpose) -> Stream {
+        let s = self.dispatch.test_skill as usize;
+        let key = [self.params[s].run_seed, self.params[s].learner_seed];
+        Stream { key, skill, trial: number, step, purpose: purpose as u32 }
     }
-    for _quantum in 0..dispatch.iterations {
-        if episode.state != STATE_RUNNING {
-            break;
+
+    /// Puts the robot at the start of test trial `number`.
+    fn begin(&mut self, episode: &mut Episode, number: u32) {
+        let skill = self.dispatch.test_skill as usize;
+        let words = draw(self.test_stream(skill as u32, number, 0, Purpose::TestStart), 0);
+        let pose = start_pose(self.tables, self.skills[skill].tests_offset, self.skills[skill].tests_count, words);
+        self.reset(pose);
+        episode.state = EPISODE_RUNNING;
+        episode.start_x = pose.x;
+        episode.start_y = pose.y;
+    }
+
+    /// Moves test trial `number` of the learner on by at most `dispatch.iterations` steps.
+    pub fn evaluate(&mut self, episodes: &mut Episode, number: u32) {
+        let mut episode = *episodes;
+        self.agent = episode.agent;
+        let root = self.dispatch.test_skill;
+        let s = root as usize;
+        if episode.state == EPISODE_FRESH {
+            self.begin(&mut episode, number);
         }
-        let stream = Stream {
-            key: [own.run_seed, own.learner_seed],
-            skill: root | dispatch.test_number << 8,
-            trial: number,
-            step: episode.agent.step,
-            purpose: Purpose::Test as u32,
-        };
-        let random = draw_step(stream);
-        sense(&mut episode.agent, shared, &mut scratch, own, &random);
-        let achieved = (episode.agent.events & skill.ends) != 0;
-        if achieved || episode.agent.step >= own.max_steps {
-            episode.state = if achieved { STATE_ACHIEVED } else { STATE_CUT };
-        } else {
-            watch(&episode.agent, shared, &mut scratch, params, nets, base, root);
-            think(&episode.agent, shared, &mut scratch, params, nets, base, root);
-            let persist = own.persist_tests == 1;
-            let found = options(&episode.agent, &scratch, &shared.skills, own, root, persist);
-            let child = choose(&mut scratch, own, skill.children, found.allowed, 1.0, true, random.x[DRAW_CHOICE]);
-            commit(&mut episode.agent, root, child, found);
-            let agent = &mut episode.agent;
-            let action = descend(agent, shared, &mut scratch, params, nets, base, root, child, &random);
-            execute(agent, shared, own, action, &random);
+        for _iteration in 0..self.dispatch.iterations {
+            if episode.state != EPISODE_RUNNING {
+                break;
+            }
+            let stream =
+                self.test_stream(root | (self.dispatch.test_number << 8), number, self.agent.step, Purpose::Test);
+            (self.forms.draw_step)(self, stream);
+            self.observe_and_score(root);
+            let achieved = (self.agent.events & self.skills[s].ends) != 0;
+            if achieved || self.agent.step >= self.params[s].max_steps {
+                episode.state = if achieved { EPISODE_TERMINATED } else { EPISODE_TRUNCATED };
+            } else {
+                self.value_children(root);
+                self.q_values(root);
+                let choices = self.action_mask(root, self.params[s].persist_tests == 1);
+                let child = self.choose(root, choices.allowed, 1.0, true, self.random.x[DRAW_CHOICE]);
+                self.commit(root, child, choices);
+                let action = self.descend_to_action(root, child);
+                self.apply_action(root, action);
+            }
         }
+        episode.agent = self.agent;
+        *episodes = episode;
     }
 }

@@ -3,5 +3,6 @@
 //! Twins: `shaders/kernels/`.
 
 pub mod evaluate;
+pub mod plain;
 pub mod step;
 pub mod train;

@@ -19,6 +19,14 @@ macro_rules! constants {
     };
 }
 
+macro_rules! codes {
+    ($($(#[$doc:meta])* $name:ident = $value:expr;)*) => {
+        $($(#[$doc])* pub const $name: u32 = $value;)*
+        /// Name and value of every code that the shaders share.
+        pub const CODES: &[(&str, u32)] = &[$((stringify!($name), $name)),*];
+    };
+}
+
 macro_rules! shared {
     ($($(#[$doc:meta])* struct $name:ident { $($(#[$field_doc:meta])* $field:ident: $kind:tt,)* })*) => {
         $(

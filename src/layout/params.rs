@@ -1,6 +1,7 @@
 //! Every number that an arm or a sweep can vary.
 
-use super::sizes::{EVENTS, MAX_CHILDREN};
+use super::events::EVENTS;
+use super::sizes::MAX_CHILDREN;
 use bytemuck::{Pod, Zeroable};
 
 shared! {

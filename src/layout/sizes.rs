@@ -27,22 +27,18 @@ constants! {
     MAX_DEPTH = 6;
     /// Code of a skill's first skill as a child; lower codes are actions.
     SKILL_CODE = 16;
-    /// Words of one recorded step of a skill over actions.
-    BASE_WORDS = 10;
-    /// Words of one recorded step of a skill over skills.
-    RECORD_WORDS = 25;
-    /// Word of a record at which the memories stand.
-    MEMORY_WORD = 11;
-    /// Memories.
-    MEMORIES = 6;
-    /// Word of a record at which the children's values stand.
-    VALUE_WORD = 17;
-    /// Words that open a lesson: its steps, how it ended, its reward, its collisions.
-    LESSON_HEADER = 4;
-    /// Kinds of events that a reward can name.
-    EVENTS = 5;
-    /// Words of one row of the trial table.
-    ROW_WORDS = 8;
+    /// Words of an observation that hold the sonar's readings.
+    SONAR_WORDS = RAYS / 4;
+    /// Bit of `light_bumpers` from which the bumpers stand.
+    BUMPERS_FROM = 24;
+    /// Words of a recorded step of a skill over actions.
+    ELEMENTARY_STEP_WORDS = std::mem::offset_of!(super::Step, high_level) / 4;
+    /// Words of a recorded step of a skill over skills.
+    STEP_WORDS = size_of::<super::Step>() / 4;
+    /// Words that open a lesson.
+    LESSON_HEADER_WORDS = size_of::<super::LessonHeader>() / 4;
+    /// Words of a row of the trial table.
+    TRIAL_WORDS = size_of::<super::TrialRecord>() / 4;
     /// Entries of a sonar coding table.
     SONAR_CODES = 128;
 }

@@ -1,10 +1,25 @@
 //! What changes while robots act and learn.
 
 use super::params::Noise;
-use super::sizes::{BASE_WORDS, MAX_SKILLS};
+use super::records::Observation;
+use super::sizes::MAX_SKILLS;
 use bytemuck::{Pod, Zeroable};
 
 shared! {
+    /// A body after an action.
+    struct Moved {
+        /// Inches.
+        x: f32,
+        /// Inches.
+        y: f32,
+        /// Degrees.
+        heading: f32,
+        /// Touching bumpers: 1 front, 2 left, 4 back, 8 right.
+        bumpers: u32,
+        /// What happened: `DOCKED`, `COLLISION`.
+        events: u32,
+    }
+
     /// A robot in a trial: its body, what it remembers, and what it is doing.
     struct Agent {
         /// Inches.
@@ -124,7 +139,7 @@ shared! {
         robot_seed: u32,
         /// Noise of its actuators and sensors.
         noise: Noise,
-        /// What it senses after the action: the first words of a record.
-        record: [u32; BASE_WORDS],
+        /// What it senses after the action.
+        sensed: Observation,
     }
 }

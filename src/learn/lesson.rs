@@ -1,67 +1,92 @@
 //! Writing lessons and rows of the trial table.
 //!
-//! Word 8 of a record: child, from bit 8 the children that were allowed, from bit 16 those among which a free
-//! choice is made, from bit 24 the events, and bit 31 where the choice was free. Word 9: the reward. Events and
-//! reward are written one step later, by the look that settles them.
+//! The choice of a step is one word: the child, from bit 8 the children that were allowed, from bit 16 those among which
+//! a free choice is made, from bit 24 the events, and bit 31 where the choice was free. Events and reward are written one
+//! step later, by the observation that settles them.
 
-use crate::layout::{LESSON_HEADER, LearnerState, RECORD_WORDS, ROW_WORDS};
-use crate::policy::persistence::Options;
+use crate::env::workgroup::Workgroup;
+use crate::layout::events::{DECISION_BIT, EVENTS_FROM};
+use crate::layout::{EVENTS, LESSON_HEADER_WORDS, LessonHeader, Step, TERMINATED, TrialRecord};
+use crate::policy::persistence::Choices;
+use std::mem::offset_of;
 
-/// The goal was achieved.
-pub const ENDED: u32 = 1;
-/// The step limit cut the trial.
-pub const CUT: u32 = 2;
-/// Bit of word 8 from which the events stand.
-pub const EVENTS_FROM: u32 = 24;
 
-/// Notes in words 8 and 9 of the record what was chosen, and among what.
+/// Word of a step that holds the choice.
+pub const STEP_CHOICE: usize = offset_of!(Step, choice) / 4;
+/// Word of a step that holds the reward.
+pub const STEP_REWARD: usize = offset_of!(Step, reward) / 4;
+/// Word of a lesson that holds its number of steps.
+pub const LESSON_STEPS: usize = offset_of!(LessonHeader, steps) / 4;
+/// Word of a lesson that tells how it ended.
+pub const LESSON_END: usize = offset_of!(LessonHeader, end) / 4;
+
+/// Packs what was chosen, and among what.
 #[inline(always)]
-pub fn note(record: &mut [u32; RECORD_WORDS], child: u32, options: Options) {
-    record[8] = child | options.allowed << 8 | options.choices << 16 | options.decision << 31;
-    record[9] = 0;
+pub fn choice_word(child: u32, choices: Choices) -> u32 {
+    child | (choices.allowed << 8) | (choices.offered << 16) | (choices.decision << DECISION_BIT)
 }
 
-/// Stores the record as step `step` of the lesson at word `lesson`.
+/// The child that was chosen.
 #[inline(always)]
-pub fn write_record(lessons: &mut [u32], record: &[u32; RECORD_WORDS], words: u32, lesson: u32, step: u32) {
-    let at = lesson as usize + LESSON_HEADER + (step * words) as usize;
-    lessons[at..at + words as usize].copy_from_slice(&record[..words as usize]);
+pub fn choice_child(word: u32) -> u32 {
+    word & 0xff
 }
 
-/// Adds what step `step` of the lesson brought about.
+/// Bits of the children that were allowed.
 #[inline(always)]
-pub fn write_outcome(lessons: &mut [u32], words: u32, lesson: u32, step: u32, events: u32, earned: f32) {
-    let at = lesson as usize + LESSON_HEADER + (step * words) as usize;
-    lessons[at + 8] |= events << EVENTS_FROM;
-    lessons[at + 9] = earned.to_bits();
+pub fn choice_allowed(word: u32) -> u32 {
+    (word >> 8) & 0xff
 }
 
-/// Completes a lesson.
+/// Bits of the children among which a free choice is made.
 #[inline(always)]
-pub fn write_header(lessons: &mut [u32], lesson: u32, steps: u32, end: u32, reward: f32, collisions: u32) {
-    let at = lesson as usize;
-    lessons[at] = steps;
-    lessons[at + 1] = end;
-    lessons[at + 2] = reward.to_bits();
-    lessons[at + 3] = collisions;
+pub fn choice_offered(word: u32) -> u32 {
+    (word >> 16) & 0xff
 }
 
-/// Appends a row to the trial table: skill, trial, actions so far, steps, reward, success, collisions, taught.
+/// Whether the choice was free.
 #[inline(always)]
-#[expect(clippy::too_many_arguments, reason = "one argument per column")]
-pub fn write_row(
-    rows: &mut [u32],
-    state: &mut LearnerState,
-    trial: u32,
-    steps: u32,
-    reward: f32,
-    end: u32,
-    collisions: u32,
-    taught: u32,
-) {
-    let at = state.rows as usize * ROW_WORDS;
-    let success = u32::from(end == ENDED);
-    let row = [state.skill, trial, state.actions, steps, reward.to_bits(), success, collisions, taught];
-    rows[at..at + ROW_WORDS].copy_from_slice(&row);
-    state.rows += 1;
+pub fn choice_is_free(word: u32) -> bool {
+    (word >> DECISION_BIT) != 0
+}
+
+/// What a choice brought about.
+pub fn choice_events(word: u32) -> u32 {
+    (word >> EVENTS_FROM) & ((1 << EVENTS) - 1)
+}
+
+impl Workgroup<'_> {
+    /// Notes in the record what was chosen, and among what.
+    pub fn set_choice(&mut self, child: u32, choices: Choices) {
+        self.record.choice = choice_word(child, choices);
+        self.record.reward = 0.0;
+    }
+
+    /// Stores the first `words` words of the record as step `step` of the lesson at word `lesson`.
+    pub fn write_step(&mut self, words: usize, lesson: usize, step: usize) {
+        let at = lesson + LESSON_HEADER_WORDS + step * words;
+        self.lessons[at..at + words].copy_from_slice(&bytemuck::cast_slice(std::slice::from_ref(&self.record))[..words]);
+    }
+
+    /// Adds what step `step` of the lesson brought about.
+    pub fn write_outcome(&mut self, words: usize, lesson: usize, step: usize, events: u32, earned: f32) {
+        let at = lesson + LESSON_HEADER_WORDS + step * words;
+        self.lessons[at + STEP_CHOICE] |= events << EVENTS_FROM;
+        self.lessons[at + STEP_REWARD] = earned.to_bits();
+    }
+
+    /// Completes a lesson.
+    pub fn write_header(&mut self, lesson: usize, steps: u32, end: u32, reward: f32, collisions: u32) {
+        let header = LessonHeader { steps, end, reward, collisions };
+        self.lessons[lesson..lesson + LESSON_HEADER_WORDS].copy_from_slice(&bytemuck::cast::<_, [u32; LESSON_HEADER_WORDS]>(header));
+    }
+
+    /// Appends a row to the trial table.
+    pub fn write_row(&mut self, trial: u32, steps: u32, reward: f32, end: u32, collisions: u32, taught: u32) {
+        let success = u32::from(end == TERMINATED);
+        let (skill, actions) = (self.state.skill, self.state.actions);
+        self.rows[self.state.rows as usize] =
+            TrialRecord { skill, trial, actions, steps, reward, success, collisions, taught };
+        self.state.rows += 1;
+    }
 }

@@ -7,94 +7,26 @@
 //! A skill over skills may learn at its decisions only: between them rewards are summed with their discount, and
 //! lambda mixes at decisions.
 
-use crate::env::workgroup::{Learner, Scratch};
-use crate::layout::phase::PHASE_FAILED;
-use crate::layout::{LANES, LESSON_HEADER, SkillShape};
-use crate::learn::lesson::CUT;
+use super::lesson::{
+    LESSON_END, LESSON_STEPS, STEP_CHOICE, STEP_REWARD, choice_allowed, choice_child, choice_is_free, choice_offered,
+};
+use crate::env::workgroup::Workgroup;
+use crate::layout::{
+    BACKUP_DECISIONS, BACKUP_STEPS, LANES, LESSON_HEADER_WORDS, PHASE_FAILED, SkillShape, TRUNCATED,
+};
 use crate::math::functions::{exponential, is_number, ln};
 use crate::math::reduce::lanes_or;
 use crate::math::rng::{Purpose, Stream, below, draw, unit};
-use crate::policy::features::encode;
-use crate::policy::select::{inverse_temperature, weigh};
-use crate::qnet::backward::{backward, learning_rate};
-use crate::qnet::forward::{forward, net_of};
 
-/// Learning from every step, the best next value over all children of a free choice.
-pub const BACKUP_STEPS: u32 = 0;
-/// Learning at decisions.
-pub const BACKUP_DECISIONS: u32 = 2;
-
-/// Word of the bank at which the learner's taught lesson `number` stands: one lesson drawn from each of
-/// `lessons` equal strata of the bank.
+/// A target inside the range that a net can give.
 #[inline(always)]
-pub fn taught_lesson(learner: &Learner<'_>, number: u32) -> u32 {
-    let params = &learner.params[learner.state.skill as usize];
-    let skill = &learner.shared.skills[learner.state.skill as usize];
-    let stream = Stream {
-        key: [params.run_seed, params.learner_seed],
-        skill: learner.state.skill,
-        trial: number,
-        step: 0,
-        purpose: Purpose::Lesson as u32,
-    };
-    let stratum = skill.bank_lessons / params.lessons;
-    let index = number * stratum + below(draw(stream, 0)[0], stratum);
-    skill.bank_offset + index * skill.lesson_stride
+pub fn clip(target_value: f32, limit: f32) -> f32 {
+    let low = if target_value > -limit { target_value } else { -limit };
+    if low < limit { low } else { limit }
 }
 
-/// Word of the memory at which a remembered lesson stands, its age drawn from an exponential
-/// distribution of mean `mean_age`, cut off at the oldest.
-#[inline(always)]
-pub fn recent_lesson(learner: &Learner<'_>, word: u32) -> u32 {
-    let params = &learner.params[learner.state.skill as usize];
-    let skill = &learner.shared.skills[learner.state.skill as usize];
-    let kept = if learner.state.remembered < params.memory { learner.state.remembered } else { params.memory };
-    // The host sends the negative inverse of the mean age: kernels do not divide.
-    let whole = 1.0 - exponential(params.age_decay * kept as f32);
-    let depth = -ln(1.0 - unit(word) * whole) * params.mean_age;
-    let drawn = depth as u32;
-    let age = if drawn < kept { drawn } else { kept - 1 };
-    let slot = (learner.state.remembered - 1 - age) % params.memory;
-    skill.memory_offset + slot * skill.lesson_stride
-}
-
-/// One word of the lesson in replay.
-#[inline(always)]
-pub fn lesson_word(learner: &Learner<'_>, offset: u32) -> u32 {
-    let at = (learner.state.replay_lesson + offset) as usize;
-    if learner.state.replay_taught == 1 { learner.shared.bank[at] } else { learner.lessons[at] }
-}
-
-/// Opens the replay of the lesson at word `lesson` of the bank (`taught` 1) or of the memory; `mirrored` 1 for what
-/// would have happened to the mirror image of the robot in the mirror image of the world.
-#[inline(always)]
-pub fn begin_replay(learner: &mut Learner<'_>, lesson: u32, taught: u32, mirrored: u32) {
-    let params = &learner.params[learner.state.skill as usize];
-    learner.state.replay_lesson = lesson;
-    learner.state.replay_taught = taught;
-    learner.state.replay_mirrored = mirrored * params.mirror_replays;
-    let steps = lesson_word(learner, 0);
-    let end = lesson_word(learner, 1);
-    learner.state.replay += 1;
-    learner.state.replay_left = steps;
-    learner.state.replay_open = u32::from(end == CUT && params.timeout_terminal == 0);
-    learner.state.next_best = 0.0;
-    learner.state.next_return = 0.0;
-}
-
-/// Fetches step `step` of the lesson in replay into the record.
-#[inline(always)]
-pub fn load_record(learner: &Learner<'_>, scratch: &mut Scratch, step: u32) {
-    let words = learner.shared.skills[learner.state.skill as usize].record_words;
-    let offset = LESSON_HEADER as u32 + step * words;
-    let at = (learner.state.replay_lesson + offset) as usize;
-    let source: &[u32] = if learner.state.replay_taught == 1 { &learner.shared.bank } else { learner.lessons };
-    scratch.record[..words as usize].copy_from_slice(&source[at..at + words as usize]);
-}
-
-/// A set of children, or that of their mirror images.
-#[inline(always)]
-pub fn reflected(skill: &SkillShape, children: u32, mirrored: bool) -> u32 {
+/// A set of a skill's children, or that of their mirror images.
+pub fn mirror_mask(skill: &SkillShape, children: u32, mirrored: bool) -> u32 {
     let mut bits = 0;
     for child in 0..skill.children {
         let image = if mirrored { skill.mirror_child[child as usize] } else { child };
@@ -103,107 +35,160 @@ pub fn reflected(skill: &SkillShape, children: u32, mirrored: bool) -> u32 {
     bits
 }
 
-/// A target inside the range that a net can give.
-#[inline(always)]
-pub fn bounded(aim: f32, limit: f32) -> f32 {
-    let low = if aim > -limit { aim } else { -limit };
-    if low < limit { low } else { limit }
-}
+impl Workgroup<'_> {
+    /// A stream of the learner's random numbers for the skill in training.
+    pub fn learner_stream(&self, trial: u32, step: u32, purpose: Purpose) -> Stream {
+        let s = self.state.skill as usize;
+        let key = [self.params[s].run_seed, self.params[s].learner_seed];
+        Stream { key, skill: self.state.skill, trial, step, purpose: purpose as u32 }
+    }
 
-/// Whether a step between two decisions is learned from too.
-#[inline(always)]
-pub fn inner_drawn(learner: &Learner<'_>, step: u32) -> bool {
-    let params = &learner.params[learner.state.skill as usize];
-    let stream = Stream {
-        key: [params.run_seed, params.learner_seed],
-        skill: learner.state.skill,
-        trial: learner.state.trial,
-        step: learner.state.replay,
-        purpose: Purpose::Inner as u32,
-    };
-    unit(draw(stream, step)[0]) < params.inner_share
-}
+    /// Word of the bank at which the learner's taught lesson `number` stands: one lesson drawn from each of
+    /// `lessons` equal strata of the bank.
+    pub fn taught_lesson(&self, number: u32) -> u32 {
+        let skill = self.state.skill as usize;
+        let stratum = self.skills[skill].bank_lessons / self.params[skill].lessons;
+        let word = draw(self.learner_stream(number, 0, Purpose::Lesson), 0)[0];
+        let index = number * stratum + below(word, stratum);
+        self.skills[skill].bank_offset + index * self.skills[skill].lesson_stride
+    }
 
-/// What the Q-value of the step at word `at` of the lesson in replay should be, given what follows it.
-#[inline(always)]
-pub fn aimed(learner: &Learner<'_>, at: u32) -> f32 {
-    let params = &learner.params[learner.state.skill as usize];
-    let reward = f32::from_bits(lesson_word(learner, at + 9)) * params.value_scale;
-    let future = (1.0 - params.lambda) * learner.state.next_best + params.lambda * learner.state.next_return;
-    bounded(reward + params.gamma * future, params.target_limit)
-}
+    /// Word of the memory at which a remembered lesson stands, its age drawn from an exponential
+    /// distribution of mean `mean_age`, cut off at the oldest.
+    pub fn recent_lesson(&self, word: u32) -> u32 {
+        let skill = self.state.skill as usize;
+        let s = skill;
+        let kept =
+            if self.state.remembered < self.params[s].memory { self.state.remembered } else { self.params[s].memory };
+        // The host sends the negative inverse of the mean age: kernels do not divide.
+        let whole = 1.0 - exponential(self.params[s].age_decay * kept as f32);
+        let depth = -ln(1.0 - unit(word) * whole) * self.params[s].mean_age;
+        let drawn = depth as u32;
+        let age = if drawn < kept { drawn } else { kept - 1 };
+        let slot = (self.state.remembered - 1 - age) % self.params[s].memory;
+        self.skills[skill].memory_offset + slot * self.skills[skill].lesson_stride
+    }
 
-/// Learns from the next step of the lesson in replay, last step first.
-#[inline(always)]
-pub fn replay_step(learner: &mut Learner<'_>, scratch: &mut Scratch, base: u32) {
-    let params = &learner.params[learner.state.skill as usize];
-    let skill = &learner.shared.skills[learner.state.skill as usize];
-    let open = learner.state.replay_open == 1;
-    let step = if open { learner.state.replay_left } else { learner.state.replay_left - 1 };
-    let at = LESSON_HEADER as u32 + step * skill.record_words;
-    let marks = lesson_word(learner, at + 8);
-    let aim = aimed(learner, at);
-    let inner = params.backup == BACKUP_DECISIONS && (marks >> 31) == 0 && !open;
-    if inner && !inner_drawn(learner, step) {
-        learner.state.next_best = aim;
-        learner.state.next_return = aim;
-        learner.state.replay_left = step;
-    } else {
-        let mirrored = learner.state.replay_mirrored == 1;
-        let done = marks & 0xff;
-        let choices = (marks >> 16) & 0xff;
-        let offered = if params.backup == BACKUP_STEPS { choices } else { (marks >> 8) & 0xff };
-        let allowed = reflected(skill, offered, mirrored);
-        load_record(learner, scratch, step);
-        encode(learner.shared, scratch, skill, mirrored);
-        forward(learner.nets, scratch, skill, params, base);
-        let outlook = weigh(scratch, skill.children, allowed, inverse_temperature(params, learner.state.trial));
-        if open {
-            learner.state.replay_open = 0;
-            learner.state.next_best = outlook.best;
-            learner.state.next_return = outlook.best;
+    /// One word of the lesson in replay.
+    pub fn lesson_word(&self, offset: usize) -> u32 {
+        let at = self.state.replay_lesson as usize + offset;
+        if self.state.replay_taught == 1 {
+            return self.bank[at];
+        }
+        self.lessons[at]
+    }
+
+    /// Opens the replay of the lesson at word `lesson` of the bank (`taught` 1) or of the memory; `mirrored` 1 for what
+    /// would have happened to the mirror image of the robot in the mirror image of the world.
+    pub fn begin_replay(&mut self, lesson: u32, taught: u32, mirrored: u32) {
+        let s = self.state.skill as usize;
+        self.state.replay_lesson = lesson;
+        self.state.replay_taught = taught;
+        self.state.replay_mirrored = mirrored * self.params[s].mirror_replays;
+        let steps = self.lesson_word(LESSON_STEPS);
+        let end = self.lesson_word(LESSON_END);
+        self.state.replay += 1;
+        self.state.replay_left = steps;
+        self.state.replay_open = u32::from(end == TRUNCATED && self.params[s].timeout_terminal == 0);
+        self.state.next_best = 0.0;
+        self.state.next_return = 0.0;
+    }
+
+    /// Fetches step `step` of the lesson in replay into the record.
+    pub fn load_step(&mut self, step: usize) {
+        let words = self.skills[self.state.skill as usize].record_words as usize;
+        let at = LESSON_HEADER_WORDS + step * words;
+        let lesson = self.state.replay_lesson as usize;
+        let source = if self.state.replay_taught == 1 { self.bank } else { &*self.lessons };
+        bytemuck::cast_slice_mut(std::slice::from_mut(&mut self.record))[..words]
+            .copy_from_slice(&source[lesson + at..lesson + at + words]);
+    }
+
+    /// Whether a step between two decisions is learned from too.
+    pub fn learn_between_decisions(&self, step: u32) -> bool {
+        let word = draw(self.learner_stream(self.state.trial, self.state.replay, Purpose::Inner), step)[0];
+        unit(word) < self.params[self.state.skill as usize].inner_share
+    }
+
+    /// What the Q-value of the step at word `at` of the lesson in replay should be, given what follows it.
+    pub fn td_target(&self, at: usize) -> f32 {
+        let s = self.state.skill as usize;
+        let reward = f32::from_bits(self.lesson_word(at + STEP_REWARD)) * self.params[s].value_scale;
+        let future =
+            (1.0 - self.params[s].lambda) * self.state.next_best + self.params[s].lambda * self.state.next_return;
+        clip(reward + self.params[s].gamma * future, self.params[s].target_limit)
+    }
+
+    /// Learns from the next step of the lesson in replay, last step first.
+    pub fn replay_step(&mut self) {
+        let skill = self.state.skill;
+        let s = skill as usize;
+        let open = self.state.replay_open == 1;
+        let step = if open { self.state.replay_left } else { self.state.replay_left - 1 };
+        let at = LESSON_HEADER_WORDS + (step * self.skills[s].record_words) as usize;
+        let choice = self.lesson_word(at + STEP_CHOICE);
+        let target_value = self.td_target(at);
+        let inner = self.params[s].backup == BACKUP_DECISIONS && !choice_is_free(choice) && !open;
+        if inner && !self.learn_between_decisions(step) {
+            self.state.next_best = target_value;
+            self.state.next_return = target_value;
+            self.state.replay_left = step;
         } else {
-            let child = if mirrored { skill.mirror_child[done as usize] } else { done };
-            let taught = params.taught_always == 1 && learner.state.replay_taught == 1;
-            let policy = taught || scratch.odds[child as usize] > params.policy_threshold * outlook.total;
-            let stretched = outlook.best + params.advantage_scale * (aim - outlook.best);
-            let plain = params.advantage_scale == 1.0;
-            let goal = if plain { aim } else { bounded(stretched, params.target_limit) };
-            let delta = goal - scratch.q[child as usize];
-            // Of all children: one that is never chosen again would not be found out otherwise.
-            let mut sound = is_number(delta);
-            for other in 0..skill.children as usize {
-                sound = sound && is_number(scratch.q[other]);
-            }
-            if !sound {
-                // The place in the lesson stays: by it the transition is found.
-                learner.state.phase = PHASE_FAILED;
+            let mirrored = self.state.replay_mirrored == 1;
+            let done = choice_child(choice);
+            let available =
+                if self.params[s].backup == BACKUP_STEPS { choice_offered(choice) } else { choice_allowed(choice) };
+            let allowed = mirror_mask(&self.skills[s], available, mirrored);
+            self.load_step(step as usize);
+            self.encode(skill, mirrored);
+            (self.forms.forward)(self, skill);
+            let inverse_temperature = self.inverse_temperature(skill, self.state.trial);
+            let found = self.boltzmann(self.skills[s].children, allowed, inverse_temperature);
+            if open {
+                self.state.replay_open = 0;
+                self.state.next_best = found.best;
+                self.state.next_return = found.best;
             } else {
-                if policy {
-                    let pace = learning_rate(params, learner.state.trial);
-                    backward(learner.nets, scratch, skill, params, base, child, delta, pace);
-                    learner.state.updates += 1;
+                let child = if mirrored { self.skills[s].mirror_child[done as usize] } else { done };
+                let taught = self.params[s].taught_always == 1 && self.state.replay_taught == 1;
+                let policy = taught || self.weights[child as usize] > self.params[s].policy_threshold * found.total;
+                let stretched = found.best + self.params[s].advantage_scale * (target_value - found.best);
+                let plain = self.params[s].advantage_scale == 1.0;
+                let aim = if plain { target_value } else { clip(stretched, self.params[s].target_limit) };
+                let delta = aim - self.q[child as usize];
+                // Of all children: one that is never chosen again would not be found out otherwise.
+                let mut sound = is_number(delta);
+                for other in 0..self.skills[s].children as usize {
+                    sound = sound && is_number(self.q[other]);
                 }
-                learner.state.next_best = if inner { aim } else { outlook.best };
-                learner.state.next_return = if policy || inner { aim } else { outlook.best };
-                learner.state.replay_left = step;
+                if !sound {
+                    // The place in the lesson stays: by it the transition is found.
+                    self.state.phase = PHASE_FAILED;
+                } else {
+                    if policy {
+                        (self.forms.backward)(self, skill, child, delta, self.learning_rate(skill, self.state.trial));
+                        self.state.updates += 1;
+                    }
+                    self.state.next_best = if inner { target_value } else { found.best };
+                    self.state.next_return = if policy || inner { target_value } else { found.best };
+                    self.state.replay_left = step;
+                }
             }
         }
     }
-}
 
-/// Whether all weights of the skill in training are numbers.
-#[inline(always)]
-pub fn sound_weights(learner: &Learner<'_>, base: u32) -> bool {
-    let skill = &learner.shared.skills[learner.state.skill as usize];
-    let mut wild = [0; LANES];
-    for number in 0..skill.nets {
-        let net = net_of(skill, base, number) as usize;
-        for row in 0..skill.rows as usize {
-            for lane in 0..LANES {
-                wild[lane] |= u32::from(!is_number(learner.nets[net + row * LANES + lane]));
+    /// Whether all weights of the skill in training are numbers.
+    pub fn weights_are_finite(&self) -> bool {
+        let skill = self.state.skill as usize;
+        let mut wild = [0; LANES];
+        for number in 0..self.skills[skill].nets {
+            let net = self.skills[skill].net_offset(number);
+            for row in 0..self.skills[skill].rows as usize {
+                for lane in 0..LANES {
+                    wild[lane] |= u32::from(!is_number(self.nets[net + row * LANES + lane]));
+                }
             }
         }
+        lanes_or(&wild) == 0
     }
-    lanes_or(&wild) == 0
 }

@@ -16,58 +16,31 @@ pub fn lanes_sums(partials: &mut Partials, children: u32, lanes: usize) {
     while width > 0 {
         for child in 0..children as usize {
             for lane in 0..width {
-                partials[child][lane] += partials[child][lane + width];
+                partials[child][lane] = partials[child][lane] + partials[child][lane + width];
             }
         }
-        width /= 2;
+        width = width / 2;
     }
-}
-
-/// Sum of the lanes by the same tree, by value: a way through memory takes longer than the sum.
-#[inline(always)]
-pub fn lanes_sum<const N: usize>(lanes: &[f32; N]) -> f32 {
-    let mut half = [0.0; 16];
-    half.copy_from_slice(&lanes[..16]);
-    if N == LANES {
-        for lane in 0..16 {
-            half[lane] += lanes[lane + 16];
-        }
-    }
-    let quarter: [f32; 8] = folded(&half);
-    let eighth: [f32; 4] = folded(&quarter);
-    let pair: [f32; 2] = folded(&eighth);
-    pair[0] + pair[1]
-}
-
-/// The upper half of the lanes added to the lower.
-#[inline(always)]
-fn folded<const N: usize, const HALF: usize>(lanes: &[f32; N]) -> [f32; HALF] {
-    let mut half = [0.0; HALF];
-    for lane in 0..HALF {
-        half[lane] = lanes[lane] + lanes[lane + HALF];
-    }
-    half
 }
 
 /// Least of the lanes' values, none of which may be negative: their bits are compared as integers.
 #[inline(always)]
 pub fn lanes_min<const N: usize>(values: &[f32; N]) -> f32 {
-    let mut least = 0x7f80_0000;
-    for lane in 0..N {
-        let bits = values[lane].to_bits();
-        least = if bits < least { bits } else { least };
+    let mut lanes_bits = 0x7f80_0000;
+    for value in values {
+        lanes_bits = lanes_bits.min(value.to_bits());
     }
-    f32::from_bits(least)
+    f32::from_bits(lanes_bits)
 }
 
 /// Bits set in any lane.
 #[inline(always)]
 pub fn lanes_or<const N: usize>(values: &[u32; N]) -> u32 {
-    let mut bits = 0;
-    for lane in 0..N {
-        bits |= values[lane];
+    let mut lanes_bits = 0;
+    for value in values {
+        lanes_bits |= value;
     }
-    bits
+    lanes_bits
 }
 
 #[cfg(test)]
@@ -80,7 +53,6 @@ mod tests {
         let mut partials = [values; MAX_CHILDREN];
         lanes_sums(&mut partials, 2, LANES);
         assert_eq!((partials[0][0], partials[1][0], partials[2][0]), (512.0, 512.0, 0.5));
-        assert_eq!((lanes_sum(&values), lanes_sum::<16>(values.first_chunk().expect("16 of 32"))), (512.0, 240.0));
         lanes_sums(&mut partials, 3, 4);
         assert_eq!(partials[2][0], 0.5 + 7.5 + 14.5 + 21.5);
         assert_eq!(lanes_min(&values), 0.5);

@@ -28,21 +28,19 @@ pub fn mul_high(a: u32, b: u32) -> u32 {
 }
 
 /// Philox4x32-10.
-///
-/// Words stand in 64 bits, so that one product gives both of its halves; what the upper 32 hold besides is cut off
-/// before it is used.
 #[inline(always)]
 pub fn philox(counter: [u32; 4], key: [u32; 2]) -> [u32; 4] {
-    const LOW: u64 = 0xffff_ffff;
-    let mut c = counter.map(u64::from);
+    let mut c = counter;
     let mut k = key;
     for _round in 0..10 {
-        let product0 = 0xd251_1f53_u64 * (c[0] & LOW);
-        let product1 = 0xcd9e_8d57_u64 * (c[2] & LOW);
-        c = [(product1 >> 32) ^ c[1] ^ u64::from(k[0]), product1, (product0 >> 32) ^ c[3] ^ u64::from(k[1]), product0];
+        let high0 = mul_high(0xd251_1f53, c[0]);
+        let low0 = 0xd251_1f53_u32.wrapping_mul(c[0]);
+        let high1 = mul_high(0xcd9e_8d57, c[2]);
+        let low1 = 0xcd9e_8d57_u32.wrapping_mul(c[2]);
+        c = [high1 ^ c[1] ^ k[0], low1, high0 ^ c[3] ^ k[1], low0];
         k = [k[0].wrapping_add(0x9e37_79b9), k[1].wrapping_add(0xbb67_ae85)];
     }
-    c.map(|word| word as u32)
+    c
 }
 
 /// Four random words: draw number `draw` of a stream.
@@ -51,83 +49,42 @@ pub fn draw(stream: Stream, draw: u32) -> [u32; 4] {
     philox([stream.trial, stream.step, (stream.purpose << 16) | draw, stream.skill], stream.key)
 }
 
-/// Draws of which one vector of 64-bit products holds all.
-pub const BATCH: usize = 8;
-
-/// Draws number `first` to `first` + 7 of a stream: word `w` of draw `first` + `i` is `[w][i]`.
-#[inline(always)]
-pub fn draws(stream: Stream, first: u32) -> [[u32; BATCH]; 4] {
-    let mut words = [[0; BATCH]; 4];
-    for i in 0..BATCH {
-        let drawn = draw(stream, first + i as u32);
-        words[0][i] = drawn[0];
-        words[1][i] = drawn[1];
-        words[2][i] = drawn[2];
-        words[3][i] = drawn[3];
-    }
-    words
-}
-
-/// Draws that [`StepRandom`] holds.
-pub const DRAWS: usize = 16;
-
-/// The random words of one primitive step: entry `i` holds draw number `i`.
-///
-/// Rays share the first six draws, a word each; the light's bearings share six that are made where the light is seen
-/// ([`bearing_words`]). The rest is named in [`crate::env::observe`].
-#[derive(Debug, Clone, Copy)]
+/// The random words of one primitive step: entry `i` holds draw number `i`. Rays share the first six draws, a word
+/// each, and so do the light's bearings theirs. The rest is named in `env/observe`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StepRandom {
-    /// What else is drawn from.
+    /// What they are drawn from: a backend may leave the light's draws for when the light is seen.
     pub stream: Stream,
     /// First word of every draw.
-    pub x: [u32; DRAWS],
+    pub x: [u32; LANES],
     /// Second word.
-    pub y: [u32; DRAWS],
+    pub y: [u32; LANES],
     /// Third word.
-    pub z: [u32; DRAWS],
+    pub z: [u32; LANES],
     /// Fourth word.
-    pub w: [u32; DRAWS],
+    pub w: [u32; LANES],
 }
 
-/// Rolls the random of one primitive step.
-#[inline(always)]
-pub fn draw_step(stream: Stream) -> StepRandom {
-    let mut random = StepRandom { stream, x: [0; DRAWS], y: [0; DRAWS], z: [0; DRAWS], w: [0; DRAWS] };
-    let low = draws(stream, 0);
-    let high = draws(stream, BATCH as u32);
-    for i in 0..BATCH {
-        random.x[i] = low[0][i];
-        random.y[i] = low[1][i];
-        random.z[i] = low[2][i];
-        random.w[i] = low[3][i];
+impl Default for StepRandom {
+    fn default() -> Self {
+        let stream = Stream { key: [0; 2], skill: 0, trial: 0, step: 0, purpose: 0 };
+        Self { stream, x: [0; LANES], y: [0; LANES], z: [0; LANES], w: [0; LANES] }
     }
-    for i in 0..BATCH {
-        random.x[BATCH + i] = high[0][i];
-        random.y[BATCH + i] = high[1][i];
-        random.z[BATCH + i] = high[2][i];
-        random.w[BATCH + i] = high[3][i];
-    }
-    random
 }
 
-/// Bearings that share a word of their draws.
-const ABREAST: usize = 6;
-
-/// Element of a bearing, 0 to 23, in an array that has one for each: six in each half of a vector, and two stay free.
-/// That is how the words of [`draws`] lie, so that nothing is moved to meet them.
-pub const fn place_of(bearing: usize) -> usize {
-    bearing / ABREAST * BATCH + bearing % ABREAST
-}
-
-/// A word for each of 24 bearings, from six draws: bearing `b` has word `b` / 6 of draw `b` % 6. It stands at
-/// [`place_of`] the bearing.
-#[inline(always)]
-pub fn bearing_words(x: &[u32], y: &[u32], z: &[u32], w: &[u32]) -> [u32; LANES] {
-    let mut words = [0; LANES];
-    for (block, drawn) in words.chunks_exact_mut(BATCH).zip([x, y, z, w]) {
-        block.copy_from_slice(&drawn[..BATCH]);
+impl StepRandom {
+    /// Draws the random words of a primitive step.
+    pub fn draw_step(&mut self, stream: Stream) {
+        self.stream = stream;
+        for lane in 0..LANES {
+            [self.x[lane], self.y[lane], self.z[lane], self.w[lane]] = draw(stream, lane as u32);
+        }
     }
-    words
+
+    /// The word of bearing `b`, whose six draws begin with number `first`: word `b` / 6 of draw `b` % 6.
+    pub fn bearing_word(&self, first: usize, b: usize) -> u32 {
+        [&self.x, &self.y, &self.z, &self.w][b / 6][first + b % 6]
+    }
 }
 
 /// Uniform in [0, 1), on a grid of 2^-24.
@@ -201,18 +158,17 @@ mod tests {
     #[test]
     fn every_bearing_has_a_word_of_its_own() {
         let stream = Stream { key: [1, 2], skill: 3, trial: 4, step: 5, purpose: Purpose::Step as u32 };
-        let random = draw_step(stream);
-        let sonar = bearing_words(&random.x, &random.y, &random.z, &random.w);
-        let light = draws(stream, 16);
-        let light = bearing_words(&light[0], &light[1], &light[2], &light[3]);
+        let mut random = StepRandom::default();
+        random.draw_step(stream);
         let mut seen = std::collections::HashSet::new();
-        for bearing in 0..24 {
-            let own = |first: usize| draw(stream, (first + bearing % 6) as u32)[bearing / 6];
-            let place = place_of(bearing);
-            assert_eq!((sonar[place], light[place]), (own(0), own(16)));
-            assert!(seen.insert(sonar[place]) && seen.insert(light[place]), "bearing {bearing}");
+        for first in [0, 16] {
+            for bearing in 0..24 {
+                let word = random.bearing_word(first, bearing);
+                assert_eq!(word, draw(stream, (first + bearing % 6) as u32)[bearing / 6]);
+                assert!(seen.insert(word), "bearing {bearing}");
+            }
         }
-        for i in 6..DRAWS {
+        for i in 6..16 {
             let words = draw(stream, i as u32);
             assert_eq!([random.x[i], random.y[i], random.z[i], random.w[i]], words);
             assert!(words.iter().all(|word| seen.insert(*word)), "draw {i}");

@@ -1,134 +1,99 @@
-//! A record's encoding as inputs of a net: groups of inputs, one after another.
+//! What a net is given of a recorded step: groups of inputs, one after another.
 
 use crate::env::sonar::READINGS_PER_DEGREE;
-use crate::env::workgroup::{CohortData, Scratch};
-use crate::layout::{BASE_WORDS, MEMORY_WORD, RAYS, SkillShape, VALUE_WORD};
+use crate::env::workgroup::Workgroup;
+use crate::layout::RAYS;
+use crate::layout::sensors::{
+    GROUP_BUMPERS, GROUP_COMPASS, GROUP_COMPASS2, GROUP_DOOR_TRACE, GROUP_LIGHT, GROUP_LIGHT_TRACE, GROUP_LIT,
+    GROUP_RANGE_MEANS, GROUP_ROOM, GROUP_RUNNING, GROUP_SONAR, GROUP_SONAR_COMPASS, GROUP_VALUES,
+};
 use crate::math::functions::{sin_cos, wrap_degrees};
+use crate::policy::applicability::{high_level_applicable, high_level_room, high_level_running};
 
-/// Input group: a table of the sonar reading.
-pub const GROUP_SONAR: u32 = 0;
-/// Input group: light bits.
-pub const GROUP_LIGHT: u32 = 1;
-/// Input group: bumper bits.
-pub const GROUP_BUMPERS: u32 = 2;
-/// Input group: cosine and sine of the compass.
-pub const GROUP_COMPASS: u32 = 3;
-/// Input group: cosine and sine of twice the compass.
-pub const GROUP_COMPASS2: u32 = 4;
-/// Input group: the sonar's table turned by the compass.
-pub const GROUP_SONAR_COMPASS: u32 = 5;
-/// Input group: whether any bearing is lit.
-pub const GROUP_LIT: u32 = 6;
-/// Input group: values of the children that have a threshold.
-pub const GROUP_VALUES: u32 = 7;
-/// Input group: which of them are applicable.
-pub const GROUP_APPLICABLE: u32 = 8;
-/// Input group: which child has been running.
-pub const GROUP_RUNNING: u32 = 9;
-/// Input group: trace of the light.
-pub const GROUP_LIGHT_TRACE: u32 = 10;
-/// Input group: trace of a door and the way through it.
-pub const GROUP_DOOR_TRACE: u32 = 11;
-/// Input group: means of ranges.
-pub const GROUP_RANGE_MEANS: u32 = 12;
-/// Input group: which room this is. Privileged.
-pub const GROUP_ROOM: u32 = 13;
-
-/// Entry of a sonar table for one ray of the record.
-#[inline(always)]
-pub fn coded(shared: &CohortData, scratch: &Scratch, table: u32, ray: usize) -> f32 {
-    let byte = (scratch.record[ray / 4] >> (8 * (ray % 4))) & 0xff;
-    f32::from_bits(shared.tables[(table + byte) as usize])
-}
-
-/// Input `lane` of the groups that are bits, or words handed on: 0 where there is none.
-#[inline(always)]
-pub fn marked(scratch: &Scratch, skill: &SkillShape, kind: u32, lane: u32) -> f32 {
-    let word = scratch.record[BASE_WORDS];
-    let running = word & 0xff;
-    let applicable = (word >> 8) & 0xff;
-    let room = (word >> 16) & 0xff;
-    let mut value = 0.0;
-    if kind == GROUP_LIT {
-        value = if (scratch.record[6] & 0x00ff_ffff) != 0 { 1.0 } else { 0.0 };
-    } else if kind == GROUP_RUNNING {
-        value = if running == lane { 1.0 } else { 0.0 };
-    } else if kind == GROUP_ROOM {
-        value = if room == lane { 1.0 } else { 0.0 };
-    } else if kind == GROUP_RANGE_MEANS {
-        value = f32::from_bits(scratch.record[MEMORY_WORD + lane as usize]);
-    } else if kind == GROUP_LIGHT_TRACE {
-        value = f32::from_bits(scratch.record[MEMORY_WORD + 2]);
-    } else if kind == GROUP_DOOR_TRACE {
-        value = f32::from_bits(scratch.record[MEMORY_WORD + 3 + lane as usize]);
-    } else {
-        // Of the children that have a threshold, the one that as many stand before as this lane has.
-        let mut before = 0;
-        for child in 0..skill.children {
-            let has = ((skill.thresholded >> child) & 1) == 1;
-            if has && before == lane {
-                let own = f32::from_bits(scratch.record[VALUE_WORD + child as usize]);
-                let bit = if ((applicable >> child) & 1) == 1 { 1.0 } else { 0.0 };
-                value = if kind == GROUP_VALUES { own } else { bit };
-            }
-            before += u32::from(has);
-        }
+impl Workgroup<'_> {
+    /// Entry of the sonar table at word `table` for one ray of the record.
+    pub fn sonar_feature(&self, table: u32, ray: usize) -> f32 {
+        f32::from_bits(self.tables[(table + self.record.observation.sonar_inches(ray)) as usize])
     }
-    value
-}
 
-/// A ring of `count` bits, or what a mirror would show of it: the first stays, the others change sides.
-#[inline(always)]
-fn shown(ring: u32, count: usize, mirrored: bool) -> u32 {
-    let others = (ring.reverse_bits() >> (31 - count)) & !(1 << count);
-    if mirrored { (ring & 1) | others } else { ring }
-}
-
-/// Turns the record, or what a mirror would show of it, into the inputs of a skill's nets.
-#[inline(always)]
-pub fn encode(shared: &CohortData, scratch: &mut Scratch, skill: &SkillShape, mirrored: bool) {
-    scratch.set = 0;
-    for group in 0..skill.groups as usize {
-        let kind = skill.group_kind[group];
-        let first = skill.group_first[group] as usize;
-        let width = skill.group_width[group];
-        let table = skill.group_table[group];
-        if kind == GROUP_SONAR {
-            for lane in 0..RAYS {
-                let ray = if mirrored { (RAYS - lane) % RAYS } else { lane };
-                scratch.inputs[first + lane] = coded(shared, scratch, table, ray);
-            }
-        } else if kind == GROUP_SONAR_COMPASS {
-            // Bearing b of the compass lies between the readings that look just before and just after it.
-            let turn = f32::from_bits(scratch.record[7]) * READINGS_PER_DEGREE;
-            let whole = turn as u32;
-            let part = turn - whole as f32;
-            for lane in 0..RAYS {
-                let after = (lane + 2 * RAYS - whole as usize) % RAYS;
-                let before = (after + RAYS - 1) % RAYS;
-                let near = coded(shared, scratch, table, after);
-                scratch.inputs[first + lane] = near + part * (coded(shared, scratch, table, before) - near);
-            }
-        } else if kind == GROUP_LIGHT {
-            let lit = shown(scratch.record[6] & 0x00ff_ffff, RAYS, mirrored);
-            for lane in 0..RAYS {
-                scratch.inputs[first + lane] = ((lit >> lane) & 1) as f32;
-            }
-            scratch.set |= u64::from(lit) << first;
-        } else if kind == GROUP_BUMPERS {
-            let touched = shown((scratch.record[6] >> 24) & 0xf, 4, mirrored);
-            for lane in 0..4 {
-                scratch.inputs[first + lane] = ((touched >> lane) & 1) as f32;
-            }
-            scratch.set |= u64::from(touched) << first;
-        } else if kind == GROUP_COMPASS || kind == GROUP_COMPASS2 {
-            let compass = f32::from_bits(scratch.record[7]);
-            let (sine, cosine) = sin_cos(if kind == GROUP_COMPASS { compass } else { wrap_degrees(compass * 2.0) });
-            scratch.inputs[first] = cosine;
-            scratch.inputs[first + 1] = sine;
+    /// Input `lane` of the groups that are single bits, or numbers handed on: 0 where there is none.
+    pub fn scalar_feature(&self, lane: u32, skill: u32, kind: u32) -> f32 {
+        let running = high_level_running(self.record.high_level);
+        let applicable = high_level_applicable(self.record.high_level);
+        let room = high_level_room(self.record.high_level);
+        let mut value = 0.0;
+        if kind == GROUP_LIT {
+            value = if self.record.observation.lit_bearings() != 0 { 1.0 } else { 0.0 };
+        } else if kind == GROUP_RUNNING {
+            value = if running == lane { 1.0 } else { 0.0 };
+        } else if kind == GROUP_ROOM {
+            value = if room == lane { 1.0 } else { 0.0 };
+        } else if kind == GROUP_RANGE_MEANS {
+            value = if lane == 0 { self.record.east_west } else { self.record.north_south };
+        } else if kind == GROUP_LIGHT_TRACE {
+            value = self.record.light_trace;
+        } else if kind == GROUP_DOOR_TRACE {
+            let way = if lane == 1 { self.record.door_cosine } else { self.record.door_sine };
+            value = if lane == 0 { self.record.door_trace } else { way };
         } else {
-            for lane in 0..width {
-                scratch.inputs[first + lane as usize] = marked(scratch, skill, kind, lane);
+            // Of the children that have a threshold, the one that as many stand before as this lane has.
+            let mut before = 0;
+            for child in 0..self.skills[skill as usize].children {
+                let has = ((self.skills[skill as usize].thresholded >> child) & 1) == 1;
+                if has && before == lane {
+                    let own = self.record.value[child as usize];
+                    let bit = if ((applicable >> child) & 1) == 1 { 1.0 } else { 0.0 };
+                    value = if kind == GROUP_VALUES { own } else { bit };
+                }
+                before += u32::from(has);
+            }
+        }
+        value
+    }
+
+    /// Turns the record, or what a mirror would show of it, into the inputs of a skill's nets.
+    pub fn encode(&mut self, skill: u32, mirrored: bool) {
+        for group in 0..self.skills[skill as usize].groups as usize {
+            let kind = self.skills[skill as usize].group_kind[group];
+            let first = self.skills[skill as usize].group_first[group] as usize;
+            let width = self.skills[skill as usize].group_width[group];
+            let table = self.skills[skill as usize].group_table[group];
+            if kind == GROUP_SONAR {
+                for lane in 0..RAYS {
+                    let ray = if mirrored { (RAYS - lane) % RAYS } else { lane };
+                    self.inputs[first + lane] = self.sonar_feature(table, ray);
+                }
+            } else if kind == GROUP_SONAR_COMPASS {
+                // Bearing b of the compass lies between the readings that look just before and just after it.
+                let turn = self.record.observation.compass_degrees() * READINGS_PER_DEGREE;
+                let whole = turn as usize;
+                let part = turn - whole as f32;
+                for lane in 0..RAYS {
+                    let after = (lane + 2 * RAYS - whole) % RAYS;
+                    let before = (after + RAYS - 1) % RAYS;
+                    let near = self.sonar_feature(table, after);
+                    self.inputs[first + lane] = near + part * (self.sonar_feature(table, before) - near);
+                }
+            } else if kind == GROUP_LIGHT {
+                for lane in 0..RAYS {
+                    let ray = if mirrored { (RAYS - lane) % RAYS } else { lane };
+                    self.inputs[first + lane] = ((self.record.observation.lit_bearings() >> ray) & 1) as f32;
+                }
+            } else if kind == GROUP_BUMPERS {
+                for lane in 0..4 {
+                    let side = if mirrored { (4 - lane) % 4 } else { lane };
+                    self.inputs[first + lane] = ((self.record.observation.bumper_bits() >> side) & 1) as f32;
+                }
+            } else if kind == GROUP_COMPASS || kind == GROUP_COMPASS2 {
+                let compass = self.record.observation.compass_degrees();
+                let angle = if kind == GROUP_COMPASS { compass } else { wrap_degrees(compass * 2.0) };
+                let turn = sin_cos(angle);
+                self.inputs[first] = turn.1;
+                self.inputs[first + 1] = turn.0;
+            } else {
+                for lane in 0..width {
+                    self.inputs[first + lane as usize] = self.scalar_feature(lane, skill, kind);
+                }
             }
         }
     }

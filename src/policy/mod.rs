@@ -2,6 +2,7 @@
 //!
 //! Twins: `shaders/policy/`.
 
+pub mod applicability;
 pub mod features;
 pub mod hierarchy;
 pub mod persistence;

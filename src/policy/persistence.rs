@@ -1,117 +1,79 @@
-//! Which children are applicable, and which may be chosen now: the Applicability Rule and the Persistence Rule
-//! (paper, section VI.B).
+//! Which children may be chosen now: the Persistence Rule (paper, section VI.B).
 
-use crate::env::events::room_of;
-use crate::env::memory::recall;
 use crate::env::motion::NO_ACTION;
-use crate::env::workgroup::Scratch;
-use crate::layout::{Agent, BASE_WORDS, HyperParams, MAX_CHILDREN, SKILL_CODE, SkillShape, VALUE_WORD, WorldUniform};
-use crate::policy::select::NO_CHILD;
+use crate::env::workgroup::Workgroup;
+use crate::layout::{MAX_CHILDREN, NO_CHILD, SKILL_CODE};
+use crate::policy::applicability::{high_level_applicable, run_applicable, run_child, run_steps, run_word};
 
-/// State of a skill that does not run: none of its children does.
-pub const IDLE: u32 = NO_CHILD;
-/// Threshold of a child that is always applicable.
-pub const ALWAYS: f32 = -2.0;
-
-/// What a skill may choose at one step.
+/// What a skill may choose at one step. Sets of children are bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Options {
+pub struct Choices {
     /// Applicable children.
     pub applicable: u32,
     /// What a free choice is made among; where the running child may not be left, that child as well.
-    pub choices: u32,
+    pub offered: u32,
     /// What may be chosen now.
     pub allowed: u32,
     /// 1 where the choice is free.
     pub decision: u32,
 }
 
-/// Completes the record with what only skills over skills are given: the running child, the applicable ones, the
-/// room, the memories, the children's values.
-#[inline(always)]
-pub fn extend(
-    agent: &Agent,
-    world: &WorldUniform,
-    scratch: &mut Scratch,
-    plan: &SkillShape,
-    params: &HyperParams,
-    n: u32,
-) {
-    let mut applicable = 0;
-    for child in 0..plan.children {
-        let code = plan.child[child as usize];
-        let known = code >= SKILL_CODE as u32 && ((plan.thresholded >> child) & 1) == 1;
-        let worth = if known { scratch.value[(code as usize) - SKILL_CODE] } else { 0.0 };
-        let above = !known || worth > params.threshold[child as usize];
-        applicable |= if above { 1 << child } else { 0 };
-        scratch.record[VALUE_WORD + child as usize] = worth.to_bits();
+impl Workgroup<'_> {
+    /// What skill `n` may choose. For a skill over actions that is every action, or every action but a blocked one.
+    pub fn action_mask(&self, n: u32, persist: bool) -> Choices {
+        let s = n as usize;
+        let all = (1 << self.skills[s].children) - 1;
+        let mut open = 0;
+        let mut actions = 0;
+        for child in 0..self.skills[s].children as usize {
+            let code = self.skills[s].child[child];
+            // A lone child is always available.
+            let masked = self.params[s].mask_blocked == 1 && code == self.agent.blocked;
+            let free = !masked || self.skills[s].children == 1;
+            open |= if free { 1 << child } else { 0 };
+            actions |= if code < SKILL_CODE as u32 { 1 << child } else { 0 };
+        }
+        let high = actions != all;
+        let applicable = if high { high_level_applicable(self.record.high_level) } else { all };
+        let suited = if self.params[s].applicability == 1 { applicable & open } else { open };
+        let choices = if suited != 0 { suited } else { open };
+        let running = run_child(self.agent.run[s]);
+        let before = run_applicable(self.agent.run[s]);
+        let mut own = 0;
+        let mut code = NO_ACTION;
+        if running < MAX_CHILDREN as u32 {
+            own = 1 << running;
+            code = self.skills[s].child[running as usize];
+        }
+        // An action ends by itself; a skill ends where its goal is achieved.
+        let skill = own != 0 && code >= SKILL_CODE as u32;
+        let mut goal = 0;
+        if skill {
+            goal = self.skills[code as usize - SKILL_CODE].ends;
+        }
+        let achieved = (self.agent.events & goal) != 0;
+        let fresh = (applicable & !before & !own) != 0;
+        let lost = self.params[s].interrupt == 1 && (applicable & own) == 0;
+        let late = self.params[s].decision_steps > 0 && run_steps(self.agent.run[s]) >= self.params[s].decision_steps;
+        let free = !persist || !skill || achieved || fresh || lost || late;
+        // What runs on is an alternative, even where it is no longer applicable: the step is learned with it.
+        let offered = if free { choices } else { choices | own };
+        let allowed = if free { choices } else { own };
+        Choices { applicable, offered, allowed, decision: u32::from(free) }
     }
-    for child in plan.children as usize..MAX_CHILDREN {
-        scratch.record[VALUE_WORD + child] = 0;
+
+    /// Notes that skill `n` has chosen `child`.
+    pub fn commit(&mut self, n: u32, child: u32, choices: Choices) {
+        let steps = run_steps(self.agent.run[n as usize]);
+        let counted = if choices.decision == 1 { 1 } else { steps + 1 };
+        let held = if counted < 255 { counted } else { 255 };
+        self.agent.run[n as usize] = run_word(child, held, choices.applicable);
     }
-    let running = agent.run[n as usize] & 0xff;
-    scratch.record[BASE_WORDS] = running | applicable << 8 | room_of(world, agent.x, agent.y) << 16;
-    recall(agent, scratch);
-}
 
-/// What skill `n` may choose. For a skill over actions that is every action, or every action but a blocked one.
-#[inline(always)]
-pub fn options(
-    agent: &Agent,
-    scratch: &Scratch,
-    skills: &[SkillShape],
-    params: &HyperParams,
-    n: u32,
-    persist: bool,
-) -> Options {
-    let plan = &skills[n as usize];
-    let all = (1 << plan.children) - 1;
-    let mut open = 0;
-    let mut actions = 0;
-    for child in 0..plan.children {
-        let code = plan.child[child as usize];
-        // A lone child is always available.
-        let masked = params.mask_blocked == 1 && code == agent.blocked;
-        let free = !masked || plan.children == 1;
-        open |= if free { 1 << child } else { 0 };
-        actions |= if code < SKILL_CODE as u32 { 1 << child } else { 0 };
-    }
-    let high = actions != all;
-    let applicable = if high { (scratch.record[BASE_WORDS] >> 8) & 0xff } else { all };
-    let suited = if params.applicability == 1 { applicable & open } else { open };
-    let choices = if suited != 0 { suited } else { open };
-    let run = agent.run[n as usize];
-    let running = run & 0xff;
-    let since = (run >> 8) & 0xff;
-    let before = (run >> 16) & 0xff;
-    let own = if running < MAX_CHILDREN as u32 { 1 << running } else { 0 };
-    let code = if own != 0 { plan.child[running as usize] } else { NO_ACTION };
-    // An action ends by itself; a skill ends where its goal is achieved.
-    let skill = own != 0 && code >= SKILL_CODE as u32;
-    let ends = if skill { skills[(code as usize) - SKILL_CODE].ends } else { 0 };
-    let achieved = (agent.events & ends) != 0;
-    let fresh = (applicable & !before & !own) != 0;
-    let lost = params.interrupt == 1 && (applicable & own) == 0;
-    let late = params.decision_steps > 0 && since >= params.decision_steps;
-    let free = !persist || !skill || achieved || fresh || lost || late;
-    // What runs on is an alternative, even where it is no longer applicable: the step is learned with it.
-    let offered = if free { choices } else { choices | own };
-    Options { applicable, choices: offered, allowed: if free { choices } else { own }, decision: u32::from(free) }
-}
-
-/// Notes that skill `n` has chosen `child`.
-#[inline(always)]
-pub fn commit(agent: &mut Agent, n: u32, child: u32, options: Options) {
-    let since = (agent.run[n as usize] >> 8) & 0xff;
-    let counted = if options.decision == 1 { 1 } else { since + 1 };
-    let held = if counted < 255 { counted } else { 255 };
-    agent.run[n as usize] = child | held << 8 | options.applicable << 16;
-}
-
-/// Skills that were not asked at this step no longer run.
-#[inline(always)]
-pub fn rest(agent: &mut Agent, root: u32, asked: u32) {
-    for n in 0..root {
-        agent.run[n as usize] = if ((asked >> n) & 1) == 1 { agent.run[n as usize] } else { IDLE };
+    /// Skills that were not asked at this step no longer run.
+    pub fn stop_unasked(&mut self, root: u32, asked: u32) {
+        for n in 0..root as usize {
+            self.agent.run[n] = if ((asked >> n) & 1) == 1 { self.agent.run[n] } else { NO_CHILD };
+        }
     }
 }

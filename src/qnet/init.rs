@@ -2,14 +2,13 @@
 
 use crate::layout::{HyperParams, LANES, SkillShape};
 use crate::math::rng::{Purpose, Stream, draw, unit};
-use crate::qnet::backward::CLOCK_SECOND;
-use crate::qnet::forward::net_of;
+use crate::qnet::optimiser::adam::BETA2_POWER;
 
 /// Fills one skill's nets: weights of the units in use uniform in plus or minus `init`, everything else 0,
 /// the clocks 1. `skill_number` keeps the skills' random numbers apart.
 pub fn init(nets: &mut [f32], skill: &SkillShape, skill_number: u32, params: &HyperParams) {
     for child in 0..skill.nets {
-        let net = net_of(skill, 0, child) as usize;
+        let net = skill.net_offset(child);
         for row in 0..skill.rows {
             for lane in 0..LANES as u32 {
                 let output_biases = row == skill.inputs + 1 + skill.outputs;
@@ -29,6 +28,6 @@ pub fn init(nets: &mut [f32], skill: &SkillShape, skill_number: u32, params: &Hy
         }
         let clock = (skill.clock_offset + child) as usize;
         nets[clock] = 1.0;
-        nets[clock + CLOCK_SECOND as usize] = 1.0;
+        nets[clock + BETA2_POWER] = 1.0;
     }
 }

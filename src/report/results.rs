@@ -8,6 +8,7 @@ use super::training::{self, Training};
 use crate::run_folder::failures::failures_of;
 use crate::run_folder::sweep::{self, read_sweep};
 use crate::run_folder::{Failure, FinishedRun, RecordError, tables};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// What tables and figures of learning are made from.
@@ -41,10 +42,10 @@ impl Results {
         if swept.is_some() {
             let shown = |arm: &String| {
                 let mut series = summary.skills.iter().flat_map(|skill| &skill.series);
-                series.find(|series| series.arm == *arm).map(|series| series.point)
+                (arm.clone(), series.find(|series| series.arm == *arm).map(|series| series.point))
             };
-            let points: Vec<Option<u32>> = names.arms.iter().map(shown).collect();
-            rows.retain(|row| points[row.arm as usize] == Some(row.point));
+            let points: BTreeMap<String, Option<u32>> = names.arms.iter().map(shown).collect();
+            rows.retain(|row| points[&row.arm] == Some(row.point));
         }
         let trainings = training::summarise(&summary, &names, &rows);
         let claims = claims::judge(&summary, &trainings);

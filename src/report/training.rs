@@ -93,12 +93,12 @@ pub fn of<'a>(trainings: &'a [Training], series: &Series) -> Option<&'a Training
 
 /// Sums the trials of each arm's root over windows.
 pub fn summarise(summary: &Summary, names: &Names, rows: &[TrialRow]) -> Vec<Training> {
-    let code = |root: &String| names.skills.iter().position(|name| name == root).map(|code| code as u32);
-    let roots: Vec<Option<u32>> =
-        names.arms.iter().map(|name| summary.arm(name).and_then(|arm| code(&arm.root))).collect();
     let mut sums: BTreeMap<(u32, u32), BTreeMap<u32, BTreeMap<u32, Tally>>> = BTreeMap::new();
-    for row in rows.iter().filter(|row| !row.taught && row.steps > 0 && roots[row.arm as usize] == Some(row.skill)) {
-        let windows = sums.entry((row.arm, row.point)).or_default();
+    for row in rows.iter().filter(|row| !row.taught && row.steps > 0) {
+        if summary.arm(&row.arm).is_none_or(|arm| arm.root != row.skill) {
+            continue;
+        }
+        let windows = sums.entry((Names::number(&names.arms, &row.arm), row.point)).or_default();
         let tally = windows.entry(row.trial / WINDOW).or_default().entry(row.seed).or_default();
         tally.seed = row.seed;
         tally.trials += 1;

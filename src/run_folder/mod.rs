@@ -5,7 +5,6 @@
 //! holds it is complete, and its hashes vouch for every other file. Files are reached through [`file_system`] alone.
 
 pub mod atomic;
-mod columns;
 mod error;
 pub mod failures;
 pub mod file_system;
@@ -16,9 +15,9 @@ mod frame;
 pub mod manifest;
 pub mod sensor_readings;
 pub mod stream;
+pub mod sums;
 pub mod sweep;
 pub mod tables;
-mod thrift;
 pub mod trajectories;
 pub mod weights;
 
@@ -28,10 +27,11 @@ pub use finished::FinishedRun;
 pub use folder::{RunFolder, State};
 pub use manifest::{Manifest, Provenance};
 pub use sensor_readings::PlaceReading;
+pub use sums::Sums;
 pub use sweep::Sweep;
 pub use tables::{EvaluationRow, Names, TrialRow};
 pub use trajectories::{Trajectory, TrajectoryPoint};
 pub use weights::{NetWeights, SkillWeights};
 
 /// Version of the run folder's layout and of every file in it.
-pub const FORMAT: u32 = 2;
+pub const FORMAT: u32 = 3;

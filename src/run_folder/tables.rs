@@ -1,10 +1,23 @@
 //! The two tables of sums, from which anybody can recompute every rate: `trials.parquet` and `evaluations.parquet`.
+//!
+//! A row's fields are the table's columns. Names are dictionary encoded by Parquet.
 
-use super::RecordError;
-use super::columns::{self, Column, Table, Writer};
 use super::file_system::{Disk, FileSystem};
-use std::io::Write;
-use std::path::Path;
+use super::{FORMAT, RecordError, Sums};
+use bytes::Bytes;
+use parquet::basic::Compression;
+use parquet::errors::ParquetError;
+use parquet::file::metadata::{KeyValue, ParquetMetaData};
+use parquet::file::properties::WriterProperties;
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::file::writer::SerializedFileWriter;
+use parquet::record::{RecordReader, RecordWriter};
+use parquet::schema::types::Type;
+use parquet_derive::{ParquetRecordReader, ParquetRecordWriter};
+use std::io::{self, Write};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// File name of the training trials.
 pub const TRIALS: &str = "trials.parquet";
@@ -12,35 +25,27 @@ pub const TRIALS: &str = "trials.parquet";
 pub const EVALUATIONS: &str = "evaluations.parquet";
 /// The arm whose rows are the planner's own tests: a bound, not a learner.
 pub const PLANNER: &str = "planner";
-
 /// The variant of tests in the world and with the noise of training.
 pub const TRAINED: &str = "trained";
+/// Room of a test that starts in none.
+pub const NO_ROOM: &str = "none";
 
-/// What the `arm`, `skill`, `variant` and `room` fields of rows index into. When read back, names come in the order in which the
-/// rows first use them.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Names {
-    /// Experimental conditions.
-    pub arms: Vec<String>,
-    /// Skills.
-    pub skills: Vec<String>,
-    /// Circumstances of tests: [`TRAINED`], or an alteration's name.
-    pub variants: Vec<String>,
-    /// Rooms in which tests start.
-    pub rooms: Vec<String>,
-}
+/// Rows written together; bounds the memory that rows and the copies of their columns take.
+const ROWS_PER_GROUP: usize = 1 << 17;
+/// Key of the file metadata that holds [`FORMAT`].
+const FORMAT_KEY: &str = "skilltree.format";
 
 /// One training trial.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, ParquetRecordWriter, ParquetRecordReader)]
 pub struct TrialRow {
-    /// Index into [`Names::arms`].
-    pub arm: u32,
+    /// Experimental condition.
+    pub arm: String,
     /// Sweep point, counted from 0.
     pub point: u32,
     /// Seed of the learner.
     pub seed: u32,
-    /// Index into [`Names::skills`].
-    pub skill: u32,
+    /// The skill in training.
+    pub skill: String,
     /// Number of the trial of this skill, counted from 0.
     pub trial: u32,
     /// Primitive actions executed so far, in teaching and for child skills too.
@@ -58,92 +63,135 @@ pub struct TrialRow {
 }
 
 /// Tests of one skill from one starting room, summed.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, ParquetRecordWriter, ParquetRecordReader)]
 pub struct EvaluationRow {
-    /// Index into [`Names::arms`].
-    pub arm: u32,
+    /// Experimental condition, or [`PLANNER`] and what follows it.
+    pub arm: String,
     /// Sweep point, counted from 0.
     pub point: u32,
     /// Seed of the learner.
     pub seed: u32,
-    /// Index into [`Names::skills`].
-    pub skill: u32,
+    /// The skill under test.
+    pub skill: String,
     /// Training trials of this skill so far.
     pub trials: u32,
     /// Primitive actions executed so far, in teaching and for child skills too.
     pub actions: u32,
-    /// Index into [`Names::variants`].
-    pub variant: u32,
-    /// Index into [`Names::rooms`].
-    pub room: u32,
-    /// Test trials.
+    /// Circumstances of the test: [`TRAINED`], or an alteration's name.
+    pub variant: String,
+    /// Room in which the test trials start, or [`NO_ROOM`].
+    pub room: String,
+    /// As in [`Sums`], and so all that follow.
     pub episodes: u32,
     /// Test trials that ended as achieved.
     pub successes: u32,
-    /// Primitive steps of all test trials.
+    /// Primitive steps.
     pub steps: u32,
-    /// Sum of rewards of all test trials, undiscounted, in the config's units.
+    /// Sum of rewards, undiscounted.
     pub reward: f64,
-    /// Sum of rewards of all test trials, each discounted from the start of its trial with the skill's own factor.
-    pub returned: f64,
-    /// Steps with contact of all test trials.
+    /// Sum of discounted rewards.
+    pub r#return: f64,
+    /// Steps with contact.
     pub collisions: u32,
 }
 
-const TRIAL_SCHEMA: &str = "message trials {
-    REQUIRED BYTE_ARRAY arm (STRING); REQUIRED INT32 point (INTEGER(32,false)); REQUIRED INT32 seed (INTEGER(32,false));
-    REQUIRED BYTE_ARRAY skill (STRING); REQUIRED INT32 trial (INTEGER(32,false));
-    REQUIRED INT32 actions (INTEGER(32,false)); REQUIRED INT32 steps (INTEGER(32,false)); REQUIRED FLOAT reward;
-    REQUIRED BOOLEAN success; REQUIRED INT32 collisions (INTEGER(32,false)); REQUIRED BOOLEAN taught;
-}";
+impl EvaluationRow {
+    /// What was counted of the test trials.
+    pub fn sums(&self) -> Sums {
+        let Self { episodes, successes, steps, collisions, reward, r#return: returned, .. } = *self;
+        Sums { episodes, successes, steps, collisions, reward, returned }
+    }
 
-const EVALUATION_SCHEMA: &str = "message evaluations {
-    REQUIRED BYTE_ARRAY arm (STRING); REQUIRED INT32 point (INTEGER(32,false)); REQUIRED INT32 seed (INTEGER(32,false));
-    REQUIRED BYTE_ARRAY skill (STRING); REQUIRED INT32 trials (INTEGER(32,false));
-    REQUIRED INT32 actions (INTEGER(32,false)); REQUIRED BYTE_ARRAY variant (STRING); REQUIRED BYTE_ARRAY room (STRING);
-    REQUIRED INT32 episodes (INTEGER(32,false)); REQUIRED INT32 successes (INTEGER(32,false));
-    REQUIRED INT32 steps (INTEGER(32,false)); REQUIRED DOUBLE reward; REQUIRED DOUBLE return;
-    REQUIRED INT32 collisions (INTEGER(32,false));
-}";
+    /// The row of the same test with these sums.
+    pub fn with_sums(self, sums: Sums) -> Self {
+        let Sums { episodes, successes, steps, collisions, reward, returned } = sums;
+        Self { episodes, successes, steps, collisions, reward, r#return: returned, ..self }
+    }
+}
 
-/// A table that is written row by row, in bounded memory. The same rows give the same bytes; the caller has sorted them.
-pub struct TableWriter<'names, Row, Sink: Write + Send> {
-    names: &'names Names,
-    columns: fn(&[Row], &Names) -> Result<Vec<Column>, RecordError>,
+/// The distinct names in the rows of a table, in the order of their first use: short numbers for long names.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Names {
+    /// Experimental conditions.
+    pub arms: Vec<String>,
+    /// Skills.
+    pub skills: Vec<String>,
+    /// Circumstances of tests.
+    pub variants: Vec<String>,
+    /// Rooms in which tests start.
+    pub rooms: Vec<String>,
+}
+
+impl Names {
+    /// Those of training trials.
+    pub fn of_trials(rows: &[TrialRow]) -> Self {
+        let mut names = Self::default();
+        for row in rows {
+            note(&mut names.arms, &row.arm);
+            note(&mut names.skills, &row.skill);
+        }
+        names
+    }
+
+    /// Those of tests.
+    pub fn of_evaluations(rows: &[EvaluationRow]) -> Self {
+        let mut names = Self::default();
+        for row in rows {
+            note(&mut names.arms, &row.arm);
+            note(&mut names.skills, &row.skill);
+            note(&mut names.variants, &row.variant);
+            note(&mut names.rooms, &row.room);
+        }
+        names
+    }
+
+    /// Number of a name in a list of distinct ones; the list's length if it is not there.
+    pub fn number(list: &[String], name: &str) -> u32 {
+        list.iter().position(|known| known == name).unwrap_or(list.len()) as u32
+    }
+}
+
+fn note(list: &mut Vec<String>, name: &str) {
+    if !list.iter().any(|known| known == name) {
+        list.push(name.to_owned());
+    }
+}
+
+/// A table that is written row by row, in bounded memory: Snappy, dictionaries, no times, nothing that depends on the
+/// machine. The same rows give the same bytes; the caller has sorted them.
+pub struct TableWriter<Row, Sink: Write + Send> {
+    path: PathBuf,
     rows: Vec<Row>,
-    file: Writer<Sink>,
+    file: SerializedFileWriter<Sink>,
 }
 
-impl<'names, Sink: Write + Send> TableWriter<'names, TrialRow, Sink> {
-    /// Begins `trials.parquet`; `path` is only for messages.
+impl<Row, Sink: Write + Send> TableWriter<Row, Sink>
+where
+    for<'rows> &'rows [Row]: RecordWriter<Row>,
+{
+    /// Begins a table; `path` is only for messages.
     ///
     /// # Errors
     /// [`RecordError::NotCommitted`] if `sink` takes no more.
-    pub fn trials(path: &Path, names: &'names Names, sink: Sink) -> Result<Self, RecordError> {
-        let file = Writer::new(path, TRIAL_SCHEMA, sink)?;
-        Ok(Self { names, columns: trial_columns, rows: Vec::new(), file })
+    pub fn new(path: &Path, sink: Sink) -> Result<Self, RecordError> {
+        let failed = |error| unwritten(path, error);
+        let properties = WriterProperties::builder()
+            .set_compression(Compression::SNAPPY)
+            .set_created_by("skilltree version 1 (build 0)".into())
+            .set_key_value_metadata(Some(vec![KeyValue::new(FORMAT_KEY.into(), FORMAT.to_string())]))
+            .build();
+        let schema = (&[] as &[Row]).schema().map_err(failed)?;
+        let file = SerializedFileWriter::new(sink, schema, Arc::new(properties)).map_err(failed)?;
+        Ok(Self { path: path.into(), rows: Vec::new(), file })
     }
-}
 
-impl<'names, Sink: Write + Send> TableWriter<'names, EvaluationRow, Sink> {
-    /// Begins `evaluations.parquet`; `path` is only for messages.
-    ///
-    /// # Errors
-    /// [`RecordError::NotCommitted`] if `sink` takes no more.
-    pub fn evaluations(path: &Path, names: &'names Names, sink: Sink) -> Result<Self, RecordError> {
-        let file = Writer::new(path, EVALUATION_SCHEMA, sink)?;
-        Ok(Self { names, columns: evaluation_columns, rows: Vec::new(), file })
-    }
-}
-
-impl<Row, Sink: Write + Send> TableWriter<'_, Row, Sink> {
     /// Adds a row.
     ///
     /// # Errors
-    /// [`RecordError::Invalid`] if a field of it has no name, [`RecordError::NotCommitted`] if the sink takes no more.
+    /// [`RecordError::NotCommitted`] if the sink takes no more.
     pub fn push(&mut self, row: Row) -> Result<(), RecordError> {
         self.rows.push(row);
-        if self.rows.len() < columns::ROWS_PER_GROUP { Ok(()) } else { self.flush() }
+        if self.rows.len() < ROWS_PER_GROUP { Ok(()) } else { self.flush() }
     }
 
     /// Ends the table and hands back where it was written to.
@@ -154,76 +202,50 @@ impl<Row, Sink: Write + Send> TableWriter<'_, Row, Sink> {
         if !self.rows.is_empty() {
             self.flush()?;
         }
-        self.file.finish()
+        self.file.into_inner().map_err(|error| unwritten(&self.path, error))
     }
 
     fn flush(&mut self) -> Result<(), RecordError> {
-        self.file.group((self.columns)(&self.rows, self.names)?)?;
+        let mut write = || {
+            let mut group = self.file.next_row_group()?;
+            self.rows.as_slice().write_to_row_group(&mut group)?;
+            group.close().map(drop)
+        };
+        write().map_err(|error| unwritten(&self.path, error))?;
         self.rows.clear();
         Ok(())
     }
 }
 
-fn trial_columns(rows: &[TrialRow], names: &Names) -> Result<Vec<Column>, RecordError> {
-    Ok(vec![
-        Column::text(rows.iter().map(|r| r.arm), &names.arms)?,
-        Column::count(rows.iter().map(|r| r.point)),
-        Column::count(rows.iter().map(|r| r.seed)),
-        Column::text(rows.iter().map(|r| r.skill), &names.skills)?,
-        Column::count(rows.iter().map(|r| r.trial)),
-        Column::count(rows.iter().map(|r| r.actions)),
-        Column::count(rows.iter().map(|r| r.steps)),
-        Column::Single(rows.iter().map(|r| r.reward).collect()),
-        Column::Flag(rows.iter().map(|r| r.success).collect()),
-        Column::count(rows.iter().map(|r| r.collisions)),
-        Column::Flag(rows.iter().map(|r| r.taught).collect()),
-    ])
+/// The disk's own error, or else a bug of ours.
+fn unwritten(path: &Path, error: ParquetError) -> RecordError {
+    let bug = |text: String| RecordError::invalid(path.display().to_string(), text);
+    match error {
+        ParquetError::External(error) => match error.downcast::<io::Error>() {
+            Ok(source) => RecordError::NotCommitted { path: path.into(), source: *source },
+            Err(error) => bug(error.to_string()),
+        },
+        error => bug(error.to_string()),
+    }
 }
 
-fn evaluation_columns(rows: &[EvaluationRow], names: &Names) -> Result<Vec<Column>, RecordError> {
-    Ok(vec![
-        Column::text(rows.iter().map(|r| r.arm), &names.arms)?,
-        Column::count(rows.iter().map(|r| r.point)),
-        Column::count(rows.iter().map(|r| r.seed)),
-        Column::text(rows.iter().map(|r| r.skill), &names.skills)?,
-        Column::count(rows.iter().map(|r| r.trials)),
-        Column::count(rows.iter().map(|r| r.actions)),
-        Column::text(rows.iter().map(|r| r.variant), &names.variants)?,
-        Column::text(rows.iter().map(|r| r.room), &names.rooms)?,
-        Column::count(rows.iter().map(|r| r.episodes)),
-        Column::count(rows.iter().map(|r| r.successes)),
-        Column::count(rows.iter().map(|r| r.steps)),
-        Column::Double(rows.iter().map(|r| r.reward).collect()),
-        Column::Double(rows.iter().map(|r| r.returned).collect()),
-        Column::count(rows.iter().map(|r| r.collisions)),
-    ])
-}
-
-/// The bytes of a whole `trials.parquet`.
+/// The bytes of a whole table.
 ///
 /// # Errors
-/// [`RecordError::Invalid`] if a row's `arm` or `skill` has no name.
-pub fn write_trials(rows: &[TrialRow], names: &Names) -> Result<Vec<u8>, RecordError> {
-    let mut table = TableWriter::trials(Path::new(TRIALS), names, Vec::new())?;
-    rows.iter().try_for_each(|row| table.push(*row))?;
+/// [`RecordError::Invalid`] if Parquet does not take the rows.
+pub fn write_table<Row: Clone>(rows: &[Row]) -> Result<Vec<u8>, RecordError>
+where
+    for<'rows> &'rows [Row]: RecordWriter<Row>,
+{
+    let mut table = TableWriter::new(Path::new("a table"), Vec::new())?;
+    rows.iter().try_for_each(|row| table.push(row.clone()))?;
     table.finish()
 }
 
-/// The bytes of a whole `evaluations.parquet`.
+/// Reads a table of training trials.
 ///
 /// # Errors
-/// [`RecordError::Invalid`] if a row's `arm`, `skill`, `variant` or `room` has no name.
-pub fn write_evaluations(rows: &[EvaluationRow], names: &Names) -> Result<Vec<u8>, RecordError> {
-    let mut table = TableWriter::evaluations(Path::new(EVALUATIONS), names, Vec::new())?;
-    rows.iter().try_for_each(|row| table.push(*row))?;
-    table.finish()
-}
-
-/// Reads a table of training trials. [`Names::rooms`] comes out empty.
-///
-/// # Errors
-/// [`RecordError::Damaged`] for anything but a table of exactly these columns, [`RecordError::Unreadable`],
-/// [`RecordError::Format`].
+/// [`RecordError::Unreadable`]; otherwise as [`parse_trials`].
 pub fn read_trials(path: &Path) -> Result<(Names, Vec<TrialRow>), RecordError> {
     parse_trials(FileSystem.read(path).map_err(RecordError::unreadable(path))?, path)
 }
@@ -231,32 +253,10 @@ pub fn read_trials(path: &Path) -> Result<(Names, Vec<TrialRow>), RecordError> {
 /// As [`read_trials`], from the file's content; `path` is only for messages.
 ///
 /// # Errors
-/// [`RecordError::Damaged`], [`RecordError::Format`].
+/// [`RecordError::Damaged`] for anything but a table of exactly these columns, [`RecordError::Format`].
 pub fn parse_trials(bytes: Vec<u8>, path: &Path) -> Result<(Names, Vec<TrialRow>), RecordError> {
-    columns::guarded(path, || trials_of(bytes, path))
-}
-
-fn trials_of(bytes: Vec<u8>, path: &Path) -> Result<(Names, Vec<TrialRow>), RecordError> {
-    let table = Table::read(bytes, path, TRIAL_SCHEMA)?;
-    let (arm, arms) = table.text(0)?;
-    let (skill, skills) = table.text(3)?;
-    let (point, seed, trial) = (table.count(1)?, table.count(2)?, table.count(4)?);
-    let (actions, steps, collisions) = (table.count(5)?, table.count(6)?, table.count(9)?);
-    let (reward, success, taught) = (table.single(7)?, table.flag(8)?, table.flag(10)?);
-    let row = |i: usize| TrialRow {
-        arm: arm[i],
-        point: point[i],
-        seed: seed[i],
-        skill: skill[i],
-        trial: trial[i],
-        actions: actions[i],
-        steps: steps[i],
-        reward: reward[i],
-        success: success[i],
-        collisions: collisions[i],
-        taught: taught[i],
-    };
-    Ok((Names { arms, skills, ..Names::default() }, (0..table.rows).map(row).collect()))
+    let rows: Vec<TrialRow> = rows_of(bytes, path)?;
+    Ok((Names::of_trials(&rows), rows))
 }
 
 /// Reads a table of tests.
@@ -272,33 +272,63 @@ pub fn read_evaluations(path: &Path) -> Result<(Names, Vec<EvaluationRow>), Reco
 /// # Errors
 /// As [`parse_trials`].
 pub fn parse_evaluations(bytes: Vec<u8>, path: &Path) -> Result<(Names, Vec<EvaluationRow>), RecordError> {
-    columns::guarded(path, || evaluations_of(bytes, path))
+    let rows: Vec<EvaluationRow> = rows_of(bytes, path)?;
+    Ok((Names::of_evaluations(&rows), rows))
 }
 
-fn evaluations_of(bytes: Vec<u8>, path: &Path) -> Result<(Names, Vec<EvaluationRow>), RecordError> {
-    let table = Table::read(bytes, path, EVALUATION_SCHEMA)?;
-    let (arm, arms) = table.text(0)?;
-    let (skill, skills) = table.text(3)?;
-    let (variant, variants) = table.text(6)?;
-    let (room, rooms) = table.text(7)?;
-    let (point, seed, trials, actions) = (table.count(1)?, table.count(2)?, table.count(4)?, table.count(5)?);
-    let (episodes, successes, steps) = (table.count(8)?, table.count(9)?, table.count(10)?);
-    let (reward, returned, collisions) = (table.double(11)?, table.double(12)?, table.count(13)?);
-    let row = |i: usize| EvaluationRow {
-        arm: arm[i],
-        point: point[i],
-        seed: seed[i],
-        skill: skill[i],
-        trials: trials[i],
-        actions: actions[i],
-        variant: variant[i],
-        room: room[i],
-        episodes: episodes[i],
-        successes: successes[i],
-        steps: steps[i],
-        reward: reward[i],
-        returned: returned[i],
-        collisions: collisions[i],
+/// All rows of a table. In a run folder the bytes have passed the manifest's hash before.
+fn rows_of<Row>(bytes: Vec<u8>, path: &Path) -> Result<Vec<Row>, RecordError>
+where
+    for<'rows> &'rows [Row]: RecordWriter<Row>,
+    Vec<Row>: RecordReader<Row>,
+{
+    let read = || -> Result<Vec<Row>, RecordError> {
+        let damaged = |error: ParquetError| RecordError::damaged(path, error.to_string());
+        let file = SerializedFileReader::new(Bytes::from(bytes)).map_err(damaged)?;
+        check_columns(path, file.metadata(), &*(&[] as &[Row]).schema().map_err(damaged)?)?;
+        check_format(path, file.metadata())?;
+        let mut all = Vec::new();
+        for number in 0..file.num_row_groups() {
+            let mut group = file.get_row_group(number).map_err(damaged)?;
+            let count = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
+            let mut rows = Vec::new();
+            rows.read_from_row_group(&mut *group, count).map_err(damaged)?;
+            all.append(&mut rows);
+        }
+        Ok(all)
     };
-    Ok((Names { arms, skills, variants, rooms }, (0..table.rows).map(row).collect()))
+    // The parquet crate and its derived readers assert what only a forged file breaks. Nothing outlives a panic here.
+    catch_unwind(AssertUnwindSafe(read))
+        .unwrap_or_else(|_| Err(RecordError::damaged(path, "not a Parquet file that can be decoded")))
+}
+
+/// The columns are those of the row, whatever their order: name, type, meaning, and that no value is absent.
+fn check_columns(path: &Path, metadata: &ParquetMetaData, expected: &Type) -> Result<(), RecordError> {
+    let (expected, found) = (expected.get_fields(), metadata.file_metadata().schema().get_fields());
+    let kind = |column: &Type| {
+        let basic = column.get_basic_info();
+        let repetition = basic.has_repetition().then(|| basic.repetition());
+        (column.is_primitive().then(|| column.get_physical_type()), basic.logical_type_ref().cloned(), repetition)
+    };
+    let problem = |expected: &Arc<Type>| match found.iter().find(|column| column.name() == expected.name()) {
+        None => Some(format!("no column `{}`", expected.name())),
+        Some(column) if kind(column) != kind(expected) => Some(format!("column `{}` has another type", column.name())),
+        Some(_) => None,
+    };
+    let unknown = || found.iter().find(|column| expected.iter().all(|other| other.name() != column.name()));
+    let twice = || (found.len() != expected.len()).then(|| "a column comes twice".to_owned());
+    let problem = expected.iter().find_map(problem);
+    let problem =
+        problem.or_else(|| unknown().map(|column| format!("unknown column `{}`", column.name()))).or_else(twice);
+    problem.map_or(Ok(()), |problem| Err(RecordError::damaged(path, problem)))
+}
+
+fn check_format(path: &Path, metadata: &ParquetMetaData) -> Result<(), RecordError> {
+    let entries = metadata.file_metadata().key_value_metadata();
+    let found = entries.and_then(|entries| entries.iter().find(|entry| entry.key == FORMAT_KEY));
+    let found = found.and_then(|entry| entry.value.clone()).unwrap_or_else(|| "unknown".into());
+    if found == FORMAT.to_string() {
+        return Ok(());
+    }
+    Err(RecordError::Format { path: path.into(), found, known: FORMAT })
 }

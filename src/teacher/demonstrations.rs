@@ -1,17 +1,16 @@
 //! Demonstrations: the bank of taught lessons, and the planner's own tests.
 
 use super::value_iteration::{Planner, origin_of};
+use crate::backend::cpu::CPU;
 use crate::config::plan::Skill;
 use crate::env::reset::{start_pose, start_region};
-use crate::env::workgroup::{CohortData, Scratch};
-use crate::layout::{Agent, BASE_WORDS, HyperParams, SkillShape};
-use crate::learn::lesson::{CUT, ENDED, note, write_header, write_outcome, write_record};
-use crate::math::rng::{Purpose, Stream, draw, draw_step};
-use crate::policy::hierarchy::{execute, place, sense};
-use crate::policy::persistence::{Options, extend};
-use crate::policy::select::NO_CHILD;
+use crate::env::workgroup::{CohortData, Workgroup};
+use crate::layout::{
+    ELEMENTARY_STEP_WORDS, HyperParams, LESSON_HEADER_WORDS, LessonHeader, NO_CHILD, SkillShape, TERMINATED, TRUNCATED,
+};
+use crate::math::rng::{Purpose, Stream, draw};
+use crate::policy::persistence::Choices;
 use crate::world::Pose;
-use bytemuck::Zeroable;
 use rayon::prelude::*;
 
 /// Demonstrations tried for each lesson wanted, before the teacher gives up.
@@ -46,24 +45,29 @@ pub struct Demonstration {
 }
 
 impl Demonstration {
+    /// What opens the lesson.
+    pub fn header(&self) -> LessonHeader {
+        bytemuck::pod_read_unaligned(bytemuck::cast_slice(&self.lesson[..LESSON_HEADER_WORDS]))
+    }
+
     /// Steps taken.
     pub fn steps(&self) -> u32 {
-        self.lesson[0]
+        self.header().steps
     }
 
     /// Whether the goal was achieved.
     pub fn achieved(&self) -> bool {
-        self.lesson[1] == ENDED
+        self.header().end == TERMINATED
     }
 
     /// Sum of the rewards.
     pub fn reward(&self) -> f32 {
-        f32::from_bits(self.lesson[2])
+        self.header().reward
     }
 
     /// Collisions.
     pub fn collisions(&self) -> u32 {
-        self.lesson[3]
+        self.header().collisions
     }
 }
 
@@ -138,38 +142,41 @@ impl Teacher<'_> {
     }
 
     fn demonstrate(&self, trial: u32, start: Pose) -> Demonstration {
-        let mut scratch = Scratch::default();
-        let mut agent = Agent::zeroed();
         let mut lesson = vec![0; self.plan.lesson_stride as usize];
+        let mut group = Workgroup {
+            skills: std::slice::from_ref(self.plan),
+            lessons: &mut lesson,
+            ..Workgroup::new(self.shared, std::slice::from_ref(self.params), &CPU.hot)
+        };
         let origin = origin_of(self.shared, start);
-        let words = self.plan.record_words;
+        let words = self.plan.record_words as usize;
         let all = (1 << self.plan.children) - 1;
-        let free = Options { applicable: all, choices: all, allowed: all, decision: 1 };
-        place(&mut agent, self.shared, start);
+        let free = Choices { applicable: all, offered: all, allowed: all, decision: 1 };
+        group.reset(start);
         loop {
-            let step = agent.step;
-            let random = draw_step(self.stream(trial, step, Purpose::Teacher));
-            sense(&mut agent, self.shared, &mut scratch, self.params, &random);
+            let step = group.agent.step;
+            (group.forms.draw_step)(&mut group, self.stream(trial, step, Purpose::Teacher));
+            group.observe_and_score(0);
             if step > 0 {
-                write_outcome(&mut lesson, words, 0, step - 1, agent.events, agent.earned);
+                group.write_outcome(words, 0, step as usize - 1, group.agent.events, group.agent.earned);
             }
-            if words > BASE_WORDS as u32 {
-                let world = &self.shared.floor.plan;
-                extend(&agent, world, &mut scratch, self.plan, self.params, self.number);
+            if words > ELEMENTARY_STEP_WORDS {
+                group.write_high_level(0);
             }
-            let achieved = agent.events & self.plan.ends != 0;
+            let achieved = group.agent.events & self.plan.ends != 0;
             if achieved || step >= self.params.max_steps {
-                note(&mut scratch.record, NO_CHILD, free);
-                write_record(&mut lesson, &scratch.record, words, 0, step);
-                let end = if achieved { ENDED } else { CUT };
-                write_header(&mut lesson, 0, step, end, agent.reward, agent.collisions);
-                return Demonstration { start, lesson, returned: agent.returned };
+                group.set_choice(NO_CHILD, free);
+                group.write_step(words, 0, step as usize);
+                let end = if achieved { TERMINATED } else { TRUNCATED };
+                group.write_header(0, step, end, group.agent.reward, group.agent.collisions);
+                let returned = group.agent.returned;
+                return Demonstration { start, lesson, returned };
             }
-            let pose = Pose { x: agent.x, y: agent.y, heading: agent.heading };
+            let pose = Pose { x: group.agent.x, y: group.agent.y, heading: group.agent.heading };
             let child = self.planner.choose(self.shared, origin, pose) as u32;
-            note(&mut scratch.record, child, free);
-            write_record(&mut lesson, &scratch.record, words, 0, step);
-            execute(&mut agent, self.shared, self.params, self.plan.child[child as usize], &random);
+            group.set_choice(child, free);
+            group.write_step(words, 0, step as usize);
+            group.apply_action(0, self.plan.child[child as usize]);
         }
     }
 }

@@ -3,15 +3,18 @@
 //! The grid is 5 in x 5 in x 15 degrees. Actuator noise enters by a three-point quadrature; between grid
 //! poses values are interpolated, over the poses that a robot can take.
 
+use crate::backend::cpu::lanes::contact::body_after;
+use crate::backend::cpu::lanes::draws::place_of;
+use crate::backend::cpu::lanes::sonar::{ranges, rays};
 use crate::config::plan::{Action, Event, Noise, NoiseKind, Robot, Skill};
-use crate::env::events::{NOWHERE, following_wall, passed_door, room_of};
-use crate::env::motion::{BESIDE_LEFT, BESIDE_RIGHT, COLLISION, PASSED_DOOR, move_body};
-use crate::env::sonar::{ranges, rays, reading};
+use crate::env::events::NOWHERE;
+use crate::env::motion::{BESIDE_LEFT, BESIDE_RIGHT, COLLISION, PASSED_DOOR};
+use crate::env::sonar::sonar_reading;
 use crate::env::workgroup::CohortData;
-use crate::layout::{RAYS, RECORD_WORDS};
+use crate::layout::{Observation, RAYS};
 use crate::math::functions::sin_cos;
-use crate::math::rng::place_of;
 use crate::world::{Pose, World};
+use bytemuck::Zeroable;
 use glam::Vec2;
 use rayon::prelude::*;
 
@@ -187,13 +190,13 @@ impl Planner {
     }
 
     fn outcome(&self, shared: &CohortData, origin: u32, pose: Pose, action: Action, slip: f32) -> Outcome {
-        let moved = move_body(&shared.floor, pose.x, pose.y, pose.heading, action as u32, slip);
-        let mut events = moved.events | passed_door(&shared.floor.plan, origin, moved.x, moved.y);
+        let moved = body_after(&shared.floor, pose.x, pose.y, pose.heading, action as u32, slip);
+        let mut events = moved.events | shared.floor.plan.passed_door(origin, moved.x, moved.y);
         if let Some((near, far)) = self.beside
             && action == Action::Forward
         {
-            let record = look(shared, moved.x, moved.y, moved.heading);
-            events |= following_wall(&record, near, far, action as u32, events);
+            let seen = noiseless_sonar(shared, moved.x, moved.y, moved.heading);
+            events |= seen.following_wall(near, far, action as u32, events);
         }
         let paid: f32 = (0..Event::ALL.len()).filter(|i| (events >> i) & 1 == 1).map(|i| self.reward[i]).sum();
         let reward = if events & COLLISION == 0 { paid } else { paid - self.collision_cost };
@@ -386,20 +389,20 @@ fn pays_beside(skill: &Skill) -> bool {
     paid(Event::BesideRight) || paid(Event::BesideLeft) || skill.ends & (BESIDE_RIGHT | BESIDE_LEFT) != 0
 }
 
-/// The sonar's words of a record at a pose, without noise.
-fn look(shared: &CohortData, x: f32, y: f32, heading: f32) -> [u32; RECORD_WORDS] {
+/// What the sonar shows at a pose, without noise; the other sensors show nothing.
+fn noiseless_sonar(shared: &CohortData, x: f32, y: f32, heading: f32) -> Observation {
     let (sine, cosine) = sin_cos(heading);
     let (ux, uy) = rays(cosine, sine);
     let range = ranges(&shared.floor, x, y, &ux, &uy);
-    let mut record = [0; RECORD_WORDS];
+    let mut seen = Observation::zeroed();
     for ray in 0..RAYS {
-        record[ray / 4] |= reading(range[place_of(ray)], 1.0) << (8 * (ray % 4));
+        seen.sonar[ray / 4] |= sonar_reading(range[place_of(ray)], 1.0) << (8 * (ray % 4));
     }
-    record
+    seen
 }
 
 /// Room in which a trial that begins here begins.
 pub fn origin_of(shared: &CohortData, pose: Pose) -> u32 {
-    let room = room_of(&shared.floor.plan, pose.x, pose.y);
+    let room = shared.floor.plan.room_of(pose.x, pose.y);
     if room == NOWHERE { 0 } else { room }
 }

@@ -1,17 +1,13 @@
 //! From a plan to the memory of a cohort: every derived size is computed here, once.
 
 use crate::config::plan::{Arm, Child, Input, Optimiser, Skill, Threshold};
+use crate::layout::sensors::{GROUP_SONAR, GROUP_SONAR_COMPASS};
 use crate::layout::{
-    BASE_WORDS, EVENTS, HyperParams, LANES, LESSON_HEADER, LearnerState, MAX_CHILDREN, MAX_GROUPS, MAX_INPUTS,
-    MAX_ROWS, MAX_SKILLS, MAX_STARTS, RECORD_WORDS, ROW_WORDS, SKILL_CODE, SONAR_CODES, SkillShape,
+    OPTIMISER_ADAM, OPTIMISER_ADAM_ROWS, OPTIMISER_SGD,
+    ELEMENTARY_STEP_WORDS, EVENTS, HyperParams, LANES, LESSON_HEADER_WORDS, LearnerState, MAX_CHILDREN, MAX_GROUPS, MAX_INPUTS,
+    MAX_ROWS, MAX_SKILLS, MAX_STARTS, STEP_WORDS, TRIAL_WORDS, SKILL_CODE, SONAR_CODES, SkillShape,
 };
-use crate::policy::features::{
-    GROUP_APPLICABLE, GROUP_BUMPERS, GROUP_COMPASS, GROUP_COMPASS2, GROUP_DOOR_TRACE, GROUP_LIGHT, GROUP_LIGHT_TRACE,
-    GROUP_LIT, GROUP_RANGE_MEANS, GROUP_ROOM, GROUP_RUNNING, GROUP_SONAR, GROUP_SONAR_COMPASS, GROUP_VALUES,
-};
-use crate::policy::persistence::ALWAYS;
-use crate::qnet::backward::{OPTIMISER_ADAM, OPTIMISER_ADAM_ROWS, OPTIMISER_SGD};
-use crate::qnet::forward::net_of;
+use crate::policy::applicability::ALWAYS;
 use crate::qnet::init::init;
 use crate::world::World;
 use crate::world::tables::Tables;
@@ -66,7 +62,7 @@ impl Shape {
                 }
                 None => {
                     plan.nets_offset = shape.nets_stride as u32;
-                    plan.clock_offset = net_of(&plan, 0, plan.nets);
+                    plan.clock_offset = plan.net_offset(plan.nets) as u32;
                     shape.nets_stride = plan.clock_offset as usize + LANES;
                 }
             }
@@ -74,15 +70,15 @@ impl Shape {
             if most(|skill| skill.trials) > 0 {
                 shape.lessons_stride += most(|skill| skill.learning.memory) as usize * plan.lesson_stride as usize;
             }
-            shape.rows_stride += most(|skill| skill.trials + skill.lessons) as usize * ROW_WORDS;
+            shape.rows_stride += most(|skill| skill.trials + skill.lessons) as usize * TRIAL_WORDS;
             shape.skills.push(plan);
         }
         // Every net can be read as one of `MAX_ROWS` rows: the last one too.
-        let ends = shape.skills.iter().map(|plan| net_of(plan, 0, plan.nets.max(1) - 1) as usize + MAX_ROWS * LANES);
+        let ends = shape.skills.iter().map(|plan| plan.net_offset(plan.nets.max(1) - 1) + MAX_ROWS * LANES);
         shape.nets_stride = ends.fold(shape.nets_stride, usize::max);
         // No buffer may be empty, even where nothing is trained.
         shape.lessons_stride = shape.lessons_stride.max(1);
-        shape.rows_stride = shape.rows_stride.max(ROW_WORDS);
+        shape.rows_stride = shape.rows_stride.max(TRIAL_WORDS);
         Ok(shape)
     }
 
@@ -106,7 +102,7 @@ impl Shape {
 
 /// Words of a lesson of at most `max_steps` steps of `record_words` each.
 pub fn lesson_stride(max_steps: u32, record_words: u32) -> u32 {
-    LESSON_HEADER as u32 + (max_steps + 1) * record_words
+    LESSON_HEADER_WORDS as u32 + (max_steps + 1) * record_words
 }
 
 /// Bits of the skills below `root`, at any depth, on whose values some threshold in its tree depends.
@@ -143,7 +139,7 @@ fn plan_of(skill: &Skill, world: &World, tables: &mut Tables) -> Result<SkillSha
     plan.children = skill.children.len() as u32;
     (plan.nets, plan.outputs) = if skill.learning.shared_net { (1, plan.children) } else { (plan.children, 1) };
     plan.rows = inputs + plan.outputs + 2;
-    plan.record_words = if skill.is_high() || recalls(skill) { RECORD_WORDS } else { BASE_WORDS } as u32;
+    plan.record_words = if skill.is_high() || recalls(skill) { STEP_WORDS } else { ELEMENTARY_STEP_WORDS } as u32;
     plan.mirrored = u32::from(skill.mirror.is_some());
     plan.groups = skill.inputs.len() as u32;
     plan.starts = skill.starts.len() as u32;
@@ -151,27 +147,12 @@ fn plan_of(skill: &Skill, world: &World, tables: &mut Tables) -> Result<SkillSha
     let (mut first, mut bits) = (0, 0_u64);
     for (group, input) in skill.inputs.iter().enumerate() {
         plan.group_first[group] = first;
-        plan.group_width[group] = input.width(skill, rooms);
-        if matches!(input, Input::Light | Input::Bumpers) {
+        plan.group_width[group] = skill.width_of(*input, rooms);
+        if input.is_bits() {
             bits |= ((1 << plan.group_width[group]) - 1) << first;
         }
         first += plan.group_width[group];
-        plan.group_kind[group] = match input {
-            Input::Sonar { .. } | Input::SonarFar => GROUP_SONAR,
-            Input::SonarCompass { .. } => GROUP_SONAR_COMPASS,
-            Input::Light => GROUP_LIGHT,
-            Input::Bumpers => GROUP_BUMPERS,
-            Input::Compass => GROUP_COMPASS,
-            Input::Compass2 => GROUP_COMPASS2,
-            Input::Lit => GROUP_LIT,
-            Input::Values => GROUP_VALUES,
-            Input::Applicable => GROUP_APPLICABLE,
-            Input::Running => GROUP_RUNNING,
-            Input::LightTrace => GROUP_LIGHT_TRACE,
-            Input::DoorTrace => GROUP_DOOR_TRACE,
-            Input::RangeMeans => GROUP_RANGE_MEANS,
-            Input::Room => GROUP_ROOM,
-        };
+        plan.group_kind[group] = input.group();
         if plan.group_kind[group] == GROUP_SONAR || plan.group_kind[group] == GROUP_SONAR_COMPASS {
             plan.group_table[group] = tables.add_table(&sonar_table(*input));
         }
@@ -207,21 +188,16 @@ fn plan_of(skill: &Skill, world: &World, tables: &mut Tables) -> Result<SkillSha
 
 /// Whether a skill's inputs stand in the second part of a record.
 fn recalls(skill: &Skill) -> bool {
-    let memory = |input: &Input| {
-        matches!(input, Input::Running | Input::LightTrace | Input::DoorTrace | Input::RangeMeans | Input::Room)
-    };
-    skill.inputs.iter().any(memory)
+    skill.inputs.iter().any(|input| input.is_recalled())
 }
 
 /// What a net is given for each sonar reading, 0 to 127 inches.
 fn sonar_table(input: Input) -> [f32; SONAR_CODES] {
     std::array::from_fn(|reading| {
         let d = reading as f64;
-        let code = match input {
-            Input::Sonar { scale } | Input::SonarCompass { scale } => {
-                2.0 * (-(d - 12.0) / f64::from(scale)).exp() - 1.0
-            }
-            _ => 2.0 * d / 127.0 - 1.0,
+        let code = match input.scale() {
+            Some(scale) => 2.0 * (-(d - 12.0) / f64::from(scale)).exp() - 1.0,
+            None => 2.0 * d / 127.0 - 1.0,
         };
         code as f32
     })

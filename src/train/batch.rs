@@ -12,9 +12,7 @@ use super::thresholds::{Fit, fit};
 use super::train_loop::{Climb, Halt, Keeper, Taker};
 use crate::backend::{Backend, Cohort, Stop};
 use crate::config::plan::{Child, Plan, Threshold};
-use crate::layout::phase::PHASE_FAILED;
-use crate::layout::{LANES, LearnerState, ROW_WORDS, SkillShape};
-use crate::qnet::forward::net_of;
+use crate::layout::{LANES, LearnerState, TRIAL_WORDS, SkillShape, PHASE_FAILED};
 use crate::run_folder::Failure;
 
 /// A learner that has learned everything below the root.
@@ -204,7 +202,7 @@ fn without_lessons(cohort: &Cohort) -> Cohort {
 }
 
 fn rows_of(cohort: &Cohort, learner: usize) -> &[u32] {
-    &cohort.rows[learner * cohort.rows_stride..][..cohort.states[learner].rows as usize * ROW_WORDS]
+    &cohort.rows[learner * cohort.rows_stride..][..cohort.states[learner].rows as usize * TRIAL_WORDS]
 }
 
 /// The weights of a learner's nets, without what the optimiser keeps beside them.
@@ -233,6 +231,6 @@ pub(super) fn weight_count(skills: &[SkillShape]) -> usize {
 fn places(skills: &[SkillShape]) -> impl Iterator<Item = (usize, usize)> {
     skills.iter().filter(|skill| skill.mirrored == 0).flat_map(|skill| {
         let slab = skill.rows as usize * LANES;
-        (0..skill.nets as usize).map(move |net| (net_of(skill, 0, net as u32) as usize, slab))
+        (0..skill.nets as usize).map(move |net| (skill.net_offset(net as u32), slab))
     })
 }

@@ -5,7 +5,7 @@ use crate::backend::Cohort;
 use crate::config::plan::{Action, Arm, Event, Plan, Skill};
 use crate::env::segments::SegmentGrid;
 use crate::env::workgroup::CohortData;
-use crate::layout::{BASE_WORDS, SkillShape};
+use crate::layout::{ELEMENTARY_STEP_WORDS, SkillShape};
 use crate::teacher::demonstrations::{Demonstration, Teacher, TeacherError, teacher_params};
 use crate::teacher::value_iteration::{PITCH, Planner, Terms};
 use crate::train::allocate::{Shape, ShapeError};
@@ -235,7 +235,7 @@ fn driven(plan: &SkillShape, skill: &Skill) -> SkillShape {
     if skill.is_high() {
         let actions = skill.actions();
         driven.children = actions.len() as u32;
-        driven.record_words = BASE_WORDS as u32;
+        driven.record_words = ELEMENTARY_STEP_WORDS as u32;
         driven.thresholded = 0;
         for (code, action) in driven.child.iter_mut().zip(actions) {
             *code = action as u32;

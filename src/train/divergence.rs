@@ -6,13 +6,11 @@
 use super::batch_group::LearnerId;
 use crate::backend::Cohort;
 use crate::config::plan::{Arm, Plan};
-use crate::env::workgroup::{Learner, Scratch};
-use crate::layout::phase::PHASE_FAILED;
-use crate::layout::{LANES, LESSON_HEADER, SkillShape};
-use crate::learn::td_lambda::{aimed, load_record};
+use crate::backend::cpu::CPU;
+use crate::env::workgroup::{Nets, Workgroup};
+use crate::layout::{LANES, LESSON_HEADER_WORDS, PHASE_FAILED, SkillShape};
+use crate::learn::lesson::choice_child;
 use crate::math::functions::is_number;
-use crate::policy::features::encode;
-use crate::qnet::forward::{forward, net_of};
 use crate::run_folder::failures::{Failure, Number, Transition, Weight};
 
 /// What a learner of the cohort has failed of, if it has.
@@ -44,43 +42,38 @@ pub fn failure_of(plan: &Plan, cohort: &Cohort, index: usize, id: LearnerId) -> 
 
 /// The step in replay, or the last one that was.
 fn transition(arm: &Arm, cohort: &Cohort, index: usize) -> Transition {
-    let mut state = cohort.states[index];
+    let state = cohort.states[index];
     let number = state.skill as usize;
     let skill = &cohort.shared.skills[number];
-    let slice = |words: &[u32], stride: usize| words[index * stride..(index + 1) * stride].to_vec();
-    let mut nets = cohort.nets[index * cohort.nets_stride..(index + 1) * cohort.nets_stride].to_vec();
-    let mut lessons = slice(&cohort.lessons, cohort.lessons_stride);
-    let mut rows = slice(&cohort.rows, cohort.rows_stride);
-    let params = &cohort.params[index * cohort.skills..(index + 1) * cohort.skills];
-    let learner = Learner {
-        shared: &cohort.shared,
-        params,
-        state: &mut state,
-        nets: &mut nets,
+    let nets = &cohort.nets[index * cohort.nets_stride..][..cohort.nets_stride];
+    let mut lessons = cohort.lessons[index * cohort.lessons_stride..][..cohort.lessons_stride].to_vec();
+    let params = &cohort.params[index * cohort.skills..][..cohort.skills];
+    let mut group = Workgroup {
+        state,
+        nets: Nets::Read(nets),
         lessons: &mut lessons,
-        rows: &mut rows,
+        ..Workgroup::new(&cohort.shared, params, &CPU.hot)
     };
-    let step = learner.state.replay_left.saturating_sub(1);
-    let mirrored = learner.state.replay_mirrored == 1;
-    let taught = learner.state.replay_taught == 1;
-    let mut scratch = Scratch::default();
-    load_record(&learner, &mut scratch, step);
-    encode(&cohort.shared, &mut scratch, skill, mirrored);
-    forward(learner.nets, &mut scratch, skill, &params[number], 0);
-    let target = aimed(&learner, LESSON_HEADER as u32 + step * skill.record_words);
+    let step = state.replay_left.saturating_sub(1);
+    let mirrored = state.replay_mirrored == 1;
+    let taught = state.replay_taught == 1;
+    group.load_step(step as usize);
+    group.encode(state.skill, mirrored);
+    (group.forms.forward)(&mut group, state.skill);
+    let target = group.td_target(LESSON_HEADER_WORDS + (step * skill.record_words) as usize);
     let first = if taught { skill.bank_offset } else { skill.memory_offset };
-    let place = (learner.state.replay_lesson - first) / skill.lesson_stride;
-    let done = (scratch.record[8] & 0xff) as usize;
+    let place = (state.replay_lesson - first) / skill.lesson_stride;
+    let done = choice_child(group.record.choice) as usize;
     let child = if mirrored { skill.mirror_child[done] as usize } else { done };
     Transition {
         taught,
-        lesson: if taught { place } else { trial_in(place, learner.state.remembered, params[number].memory) },
+        lesson: if taught { place } else { trial_in(place, state.remembered, params[number].memory) },
         mirrored,
         step,
         child: arm.name_of(arm.skills[number].children[child]).to_owned(),
-        record: scratch.record[..skill.record_words as usize].to_vec(),
-        inputs: scratch.inputs[..skill.inputs as usize].iter().map(|value| Number(*value)).collect(),
-        q: scratch.q[..skill.children as usize].iter().map(|value| Number(*value)).collect(),
+        record: bytemuck::cast_slice(std::slice::from_ref(&group.record))[..skill.record_words as usize].to_vec(),
+        inputs: group.inputs[..skill.inputs as usize].iter().map(|value| Number(*value)).collect(),
+        q: group.q[..skill.children as usize].iter().map(|value| Number(*value)).collect(),
         target: Number(target),
     }
 }
@@ -98,7 +91,7 @@ fn wild_weight(arm: &Arm, cohort: &Cohort, index: usize) -> Option<Weight> {
     let base = index * cohort.nets_stride;
     let nets = &cohort.nets[base..base + cohort.nets_stride];
     (0..skill.nets).find_map(|net| {
-        let first = net_of(skill, 0, net) as usize;
+        let first = skill.net_offset(net);
         let weights = &nets[first..first + skill.rows as usize * LANES];
         let place = weights.iter().position(|weight| !is_number(*weight))?;
         Some(named(arm, number, skill, net as usize, (place / LANES, place % LANES), weights[place]))

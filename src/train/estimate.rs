@@ -11,7 +11,7 @@ use super::pretraining::group_of;
 use super::schedule::Stage;
 use crate::backend::{Backend, BackendError, Stop};
 use crate::config::plan::{Backup, Plan, Skill};
-use crate::layout::{LearnerState, ROW_WORDS, SkillShape};
+use crate::layout::{LearnerState, TRIAL_WORDS, SkillShape};
 use std::time::{Duration, Instant};
 
 /// Mean length of a trial that ends when its goal is achieved, as a share of `max_steps`: 0.4 to 0.7 in our runs.
@@ -228,7 +228,7 @@ pub fn parts_bytes(groups: &[Group], stages: &[Stage]) -> u64 {
     let cohorts = stages.iter().flat_map(|stage| &stage.cohorts);
     let each = cohorts.map(|ids| {
         let shape = &group_of(groups, ids[0].arm).shape;
-        let rows = shape.rows_stride.next_multiple_of(ROW_WORDS);
+        let rows = shape.rows_stride.next_multiple_of(TRIAL_WORDS);
         // A third of the nets' memory are weights, the rest is the optimiser's.
         ids.len() * 4 * (rows + shape.nets_stride / 3)
     });

@@ -28,10 +28,10 @@ impl Senses {
     /// What the robot sensed last.
     pub fn of(robot: &Robot) -> Self {
         Self {
-            sonar: std::array::from_fn(|ray| (robot.record[ray / 4] >> (8 * (ray % 4))) & 0xff),
-            light: std::array::from_fn(|ray| ((robot.record[6] >> ray) & 1) as u8),
-            bumpers: std::array::from_fn(|side| ((robot.record[6] >> (24 + side)) & 1) as u8),
-            compass: f32::from_bits(robot.record[7]),
+            sonar: std::array::from_fn(|ray| robot.sensed.sonar_inches(ray)),
+            light: std::array::from_fn(|ray| ((robot.sensed.lit_bearings() >> ray) & 1) as u8),
+            bumpers: std::array::from_fn(|side| ((robot.sensed.bumper_bits() >> side) & 1) as u8),
+            compass: robot.sensed.compass_degrees(),
         }
     }
 }

@@ -6,7 +6,7 @@ use crate::backend::parity::{self, Difference, UNWRITTEN};
 use crate::backend::{Backend, BackendError, Cohort, Stop, Test};
 use crate::config::plan::{NoiseKind, Plan};
 use crate::env::workgroup::CohortData;
-use crate::layout::{BASE_WORDS, Episode, Robot};
+use crate::layout::{Action, Episode, Observation, Robot};
 use crate::math::rng::philox;
 use crate::world::Pose;
 use glam::Vec2;
@@ -125,9 +125,9 @@ impl Work {
         let mut robots = self.robots.clone();
         for step in 0..ACTIONS {
             for (number, robot) in robots.iter_mut().enumerate() {
-                robot.action = philox([number as u32, step, 1, 0], [33, 44])[0] % 6;
+                robot.action = philox([number as u32, step, 1, 0], [33, 44])[0] % Action::ALL.len() as u32;
                 robot.events = UNWRITTEN;
-                robot.record = [UNWRITTEN; BASE_WORDS];
+                robot.sensed = bytemuck::cast([UNWRITTEN; size_of::<Observation>() / 4]);
             }
             backend.step(&self.floor, &mut robots, 1 + step % 2)?;
             sample.robots.push(robots.clone());

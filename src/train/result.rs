@@ -2,36 +2,7 @@
 
 use super::batch_group::LearnerId;
 use super::codec::{PartError, Reader, words_of};
-use crate::run_folder::Failure;
-
-/// Sums of test trials that began in one room.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct RoomSums {
-    /// Trials.
-    pub episodes: u32,
-    /// Trials that achieved the goal.
-    pub successes: u32,
-    /// Steps.
-    pub steps: u32,
-    /// Collisions.
-    pub collisions: u32,
-    /// Reward.
-    pub reward: f64,
-    /// Reward, discounted from the start of each trial.
-    pub returned: f64,
-}
-
-impl RoomSums {
-    /// Counts other trials in.
-    pub fn add(&mut self, other: &Self) {
-        self.episodes += other.episodes;
-        self.successes += other.successes;
-        self.steps += other.steps;
-        self.collisions += other.collisions;
-        self.reward += other.reward;
-        self.returned += other.returned;
-    }
-}
+use crate::run_folder::{Failure, Sums};
 
 /// One test of one learner.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,7 +16,7 @@ pub struct TestResult {
     /// 0 for the circumstances of training, else the number of the plan's alteration, counted from 1.
     pub variant: u32,
     /// One entry per room, and one for starts in no room.
-    pub rooms: Vec<RoomSums>,
+    pub rooms: Vec<Sums>,
 }
 
 /// All that one learner leaves.
@@ -157,7 +128,7 @@ pub(super) fn read_tests(reader: &mut Reader<'_>) -> Result<Vec<TestResult>, Par
         for _room in 0..count {
             let [episodes, successes, steps, collisions] = reader.words()?;
             let (reward, returned) = (reader.double()?, reader.double()?);
-            rooms.push(RoomSums { episodes, successes, steps, collisions, reward, returned });
+            rooms.push(Sums { episodes, successes, steps, collisions, reward, returned });
         }
         found.push(TestResult { skill, trials, actions, variant, rooms });
     }
@@ -197,8 +168,8 @@ mod tests {
 
     fn example() -> Vec<LearnerResult> {
         let mut result = LearnerResult::new(LearnerId { arm: 2, seed: 9 });
-        let mut rooms = vec![RoomSums::default(); 2];
-        rooms[1].add(&RoomSums { episodes: 1, successes: 1, steps: 7, collisions: 3, reward: -0.1, returned: 0.2 });
+        let mut rooms = vec![Sums::default(); 2];
+        rooms[1] = Sums { episodes: 1, successes: 1, steps: 7, collisions: 3, reward: -0.1, returned: 0.2 };
         result.tests.push(TestResult { skill: 0, trials: 5, actions: 60, variant: 2, rooms });
         result.rows = vec![1, 2, 3];
         result.weights = vec![0.5, -0.0];

@@ -7,11 +7,11 @@
 //! finds the same bits.
 
 use crate::backend::Cohort;
-use crate::env::workgroup::Scratch;
-use crate::layout::LESSON_HEADER;
-use crate::learn::lesson::ENDED;
-use crate::policy::features::encode;
-use crate::qnet::forward::forward;
+use crate::backend::cpu::CPU;
+use crate::env::workgroup::{Nets, Workgroup};
+use crate::layout::{HyperParams, LearnerState, TERMINATED};
+use crate::learn::lesson::{LESSON_END, LESSON_STEPS};
+use bytemuck::Zeroable;
 
 /// Newton steps of a fit; it has settled long before.
 const ROUNDS: u32 = 50;
@@ -101,22 +101,28 @@ impl Fit {
 /// What a learner's nets say of the later half of the trials that it remembers of a skill.
 pub fn fit(cohort: &Cohort, learner: usize, skill: usize) -> Fit {
     let plan = &cohort.shared.skills[skill];
-    let params = &cohort.params[learner * cohort.skills + skill];
+    let params = &cohort.params[learner * cohort.skills..][..cohort.skills];
     let nets = &cohort.nets[learner * cohort.nets_stride..][..cohort.nets_stride];
-    let lessons = &cohort.lessons[learner * cohort.lessons_stride..][..cohort.lessons_stride];
-    let kept = params.trials.min(params.memory);
-    let mut scratch = Scratch::default();
+    let mut lessons = cohort.lessons[learner * cohort.lessons_stride..][..cohort.lessons_stride].to_vec();
+    let HyperParams { trials, memory, .. } = params[skill];
+    let kept = trials.min(memory);
+    let mut group = Workgroup {
+        nets: Nets::Read(nets),
+        lessons: &mut lessons,
+        state: LearnerState { skill: skill as u32, ..LearnerState::zeroed() },
+        ..Workgroup::new(&cohort.shared, params, &CPU.hot)
+    };
     let mut seen = Vec::new();
     for age in 0..kept.div_ceil(2) {
-        let slot = (params.trials - 1 - age) % params.memory;
-        let lesson = &lessons[(plan.memory_offset + slot * plan.lesson_stride) as usize..];
-        let words = plan.record_words as usize;
-        for record in lesson[LESSON_HEADER..].chunks(words).take(lesson[0] as usize) {
-            scratch.record[..words].copy_from_slice(record);
-            encode(&cohort.shared, &mut scratch, plan, false);
-            forward(nets, &mut scratch, plan, params, 0);
-            let best = scratch.q[..plan.children as usize].iter().copied().fold(f32::NEG_INFINITY, f32::max);
-            seen.push((f64::from(best), lesson[1] == ENDED));
+        let slot = (trials - 1 - age) % memory;
+        group.state.replay_lesson = plan.memory_offset + slot * plan.lesson_stride;
+        let achieved = group.lesson_word(LESSON_END) == TERMINATED;
+        for step in 0..group.lesson_word(LESSON_STEPS) {
+            group.load_step(step as usize);
+            group.encode(skill as u32, false);
+            (group.forms.forward)(&mut group, skill as u32);
+            let best = group.q[..plan.children as usize].iter().copied().fold(f32::NEG_INFINITY, f32::max);
+            seen.push((f64::from(best), achieved));
         }
     }
     Fit::new(&seen)

@@ -4,13 +4,11 @@
 //! is the learners' memory and the tests that they have taken, and whoever goes on from there skips what lies behind.
 
 use super::batch_group::{Group, LearnerId};
-use super::result::{LearnerResult, RoomSums, TestResult};
+use super::result::{LearnerResult, TestResult};
 use crate::backend::{Backend, BackendError, Cohort, Stop, Test};
 use crate::config::plan::Plan;
-use crate::kernels::evaluate::STATE_ACHIEVED;
-use crate::layout::phase::PHASE_FAILED;
-use crate::layout::{Episode, LearnerState};
-use crate::run_folder::RecordError;
+use crate::layout::{EPISODE_TERMINATED, Episode, LearnerState, PHASE_FAILED};
+use crate::run_folder::{RecordError, Sums};
 use crate::world::World;
 use glam::Vec2;
 use std::ops::Range;
@@ -237,20 +235,18 @@ fn trials_of(plan: &Plan, id: LearnerId, state: &LearnerState) -> u64 {
     u64::from(before + state.trial)
 }
 
-/// Sums of a learner's test trials by the room in which they began; one entry per room of the world.
-fn sums(world: &World, episodes: &[Episode]) -> Vec<RoomSums> {
-    let mut rooms = vec![RoomSums::default(); world.rooms.len() + 1];
-    for episode in episodes {
-        let start = Vec2::new(episode.start_x, episode.start_y);
-        let agent = &episode.agent;
-        rooms[world.room_of(start).unwrap_or(world.rooms.len())].add(&RoomSums {
+/// Sums of a learner's test trials by the room in which they began; one entry per room of the world, and one for none.
+fn sums(world: &World, episodes: &[Episode]) -> Vec<Sums> {
+    let mut rooms = vec![Sums::default(); world.rooms.len() + 1];
+    for Episode { state, start_x, start_y, agent } in episodes {
+        rooms[world.room_of(Vec2::new(*start_x, *start_y)).unwrap_or(world.rooms.len())] += Sums {
             episodes: 1,
-            successes: u32::from(episode.state == STATE_ACHIEVED),
+            successes: u32::from(*state == EPISODE_TERMINATED),
             steps: agent.step,
             collisions: agent.collisions,
             reward: f64::from(agent.reward),
             returned: f64::from(agent.returned),
-        });
+        };
     }
     rooms
 }

@@ -4,9 +4,10 @@ use super::batch::unpack;
 use super::batch_group::Group;
 use super::result::LearnerResult;
 use crate::config::plan::Plan;
-use crate::kernels::evaluate::{STATE_ACHIEVED, STATE_RUNNING, evaluate};
-use crate::layout::{Dispatch, Episode};
-use crate::policy::hierarchy::place;
+use crate::backend::cpu::CPU;
+use crate::env::workgroup::{Nets, Workgroup};
+use crate::layout::{Dispatch, EPISODE_RUNNING, EPISODE_TERMINATED, Episode};
+use crate::policy::applicability::run_child;
 use crate::run_folder::{Trajectory, TrajectoryPoint};
 use bytemuck::Zeroable;
 
@@ -24,14 +25,18 @@ pub fn trajectories(plan: &Plan, group: &Group, result: &LearnerResult) -> Vec<T
     params[root].threshold.copy_from_slice(&result.thresholds);
     let skill = &own.skills[root];
     for (number, (place_name, pose)) in plan.world_of(own).places.iter().enumerate() {
-        let mut episode = Episode { state: STATE_RUNNING, ..Episode::zeroed() };
-        place(&mut episode.agent, &group.shared, *pose);
-        let dispatch = Dispatch { iterations: 1, test_skill: root as u32, test_number: NUMBER, ..Dispatch::zeroed() };
+        let mut workgroup = Workgroup {
+            dispatch: Dispatch { iterations: 1, test_skill: root as u32, test_number: NUMBER, ..Dispatch::zeroed() },
+            nets: Nets::Read(&nets),
+            ..Workgroup::new(&group.shared, &params, &CPU.hot)
+        };
+        workgroup.reset(*pose);
+        let mut episode = Episode { state: EPISODE_RUNNING, agent: workgroup.agent, ..Episode::zeroed() };
         let mut points = Vec::new();
-        while episode.state == STATE_RUNNING {
+        while episode.state == EPISODE_RUNNING {
             let (x, y, heading) = (episode.agent.x, episode.agent.y, episode.agent.heading);
-            evaluate(&mut episode, &group.shared, &params, &nets, &dispatch, number as u32);
-            points.push(TrajectoryPoint { x, y, heading, child: episode.agent.run[root] & 0xff });
+            workgroup.evaluate(&mut episode, number as u32);
+            points.push(TrajectoryPoint { x, y, heading, child: run_child(episode.agent.run[root]) });
         }
         out.push(Trajectory {
             arm: own.name.clone(),
@@ -40,7 +45,7 @@ pub fn trajectories(plan: &Plan, group: &Group, result: &LearnerResult) -> Vec<T
             place: place_name.clone(),
             world: plan.worlds[own.world].file.clone(),
             children: skill.children.iter().map(|child| own.name_of(*child).to_owned()).collect(),
-            achieved: episode.state == STATE_ACHIEVED,
+            achieved: episode.state == EPISODE_TERMINATED,
             points,
         });
     }

@@ -4,7 +4,7 @@ use super::batch::weight_count;
 use super::batch_group::{Group, LearnerId};
 use super::result::{LearnerResult, TestResult};
 use crate::config::plan::{Arm, Plan};
-use crate::layout::{MAX_CHILDREN, ROW_WORDS};
+use crate::layout::{MAX_CHILDREN, TRIAL_WORDS};
 
 /// Whether the plan has such a learner.
 pub(super) fn is_known(plan: &Plan, id: LearnerId) -> bool {
@@ -27,7 +27,7 @@ pub(super) fn are_tests(plan: &Plan, arm: &Arm, tests: &[TestResult]) -> bool {
 
 /// Whether the rows of the trial table are whole and of an arm's skills.
 pub(super) fn are_rows(arm: &Arm, rows: &[u32]) -> bool {
-    let (whole, rest) = rows.as_chunks::<ROW_WORDS>();
+    let (whole, rest) = rows.as_chunks::<TRIAL_WORDS>();
     rest.is_empty() && whole.iter().all(|row| (row[0] as usize) < arm.skills.len())
 }
 

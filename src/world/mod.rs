@@ -12,6 +12,7 @@ pub mod tables;
 pub use load::{load, parse};
 pub use tables::Tables;
 
+use crate::layout::WorldPart;
 use glam::Vec2;
 
 /// Radius of the robot's body in inches (paper, Figure 1).
@@ -125,4 +126,20 @@ pub struct World {
     pub places: Vec<(String, Pose)>,
     /// Start regions that the file names itself, in its order.
     pub regions: Vec<(String, Rect)>,
+}
+
+impl World {
+    /// Whether the floor plan has this part.
+    pub fn has(&self, part: WorldPart) -> bool {
+        match part {
+            WorldPart::Charger => self.charger.is_some(),
+            WorldPart::Doors => !self.doors.is_empty(),
+            WorldPart::Light => self.light.is_some(),
+        }
+    }
+
+    /// What of the floor plan is needed and not there.
+    pub fn lacks(&self, needed: Option<WorldPart>) -> Option<WorldPart> {
+        needed.filter(|part| !self.has(*part))
+    }
 }

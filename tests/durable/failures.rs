@@ -263,7 +263,8 @@ fn a_run_lists_its_failures() {
     assert!(notes.values().any(|note| note.contains("1 of 6") && note.contains("failures.json")), "{notes:?}");
     let (_, rows) = read_evaluations(&dir.join(EVALUATIONS)).expect("tests");
     let tested = |seed: u32| {
-        let mut trials: Vec<u32> = rows.iter().filter(|r| r.arm == 0 && r.seed == seed).map(|r| r.trials).collect();
+        let mut trials: Vec<u32> =
+            rows.iter().filter(|r| r.arm == "untaught-adam" && r.seed == seed).map(|r| r.trials).collect();
         trials.dedup();
         trials
     };

@@ -10,7 +10,6 @@ use skilltree::run_folder::file_system::Disk;
 use skilltree::run_folder::manifest::Manifest;
 use skilltree::run_folder::sensor_readings::read_places;
 use skilltree::run_folder::sweep::read_sweep;
-use skilltree::run_folder::tables::{parse_evaluations, parse_trials};
 use skilltree::run_folder::trajectories::read_trajectories;
 use skilltree::run_folder::weights::read_weights;
 use skilltree::train::batch::train;
@@ -65,17 +64,6 @@ fn checkpoints() {
     let seeds = [seed.expect("a checkpoint")];
     let read = |input: &[u8]| Ok(Checkpoint::read(input, &experiment.plan, &experiment.groups).is_ok());
     campaign("checkpoints", |random| mutate::bytes(random, &seeds), read).conclude("checkpoints");
-}
-
-#[test]
-fn tables() {
-    let (trials, tests) = (file("trials.parquet"), file("evaluations.parquet"));
-    let seeds = [trials, tests];
-    let read = |input: &[u8]| {
-        let trials = parse_trials(input.to_vec(), somewhere()).is_ok();
-        Ok(trials | parse_evaluations(input.to_vec(), somewhere()).is_ok())
-    };
-    campaign("tables", |random| mutate::bytes(random, &seeds), read).conclude("tables");
 }
 
 #[test]

@@ -7,8 +7,8 @@ use super::{file, files, mutate, somewhere};
 use skilltree::report::{gallery, page, results::Results, text};
 use skilltree::run_folder::file_system::Disk;
 use skilltree::run_folder::manifest::FileDigest;
-use skilltree::run_folder::tables::{parse_evaluations, parse_trials, write_evaluations, write_trials};
-use skilltree::run_folder::{FinishedRun, Manifest, Names};
+use skilltree::run_folder::tables::{parse_evaluations, parse_trials, write_table};
+use skilltree::run_folder::{FinishedRun, Manifest};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -32,18 +32,11 @@ fn amount(random: &mut mutate::StepRandom, value: &mut f64) {
     }
 }
 
-fn renamed(random: &mut mutate::StepRandom, names: &mut Names) {
-    let Names { arms, skills, variants, rooms } = names;
-    for list in [arms, skills, variants, rooms] {
-        let words =
-            ["", "planner", "trained", "none", "dock", "räume", "<b>&\"", "recharge", "hierarchical", "A\nB\u{0}"];
-        for name in list.iter_mut() {
-            if random.below(6) == 0 {
-                (*random.pick(&words)).clone_into(name);
-            }
-        }
-        // More than the file had, so that rows may name them.
-        list.extend((0..random.below(4)).map(|_| (*random.pick(&words)).to_owned()));
+/// Another name now and then, one that no row has among them.
+fn renamed(random: &mut mutate::StepRandom, name: &mut String) {
+    let words = ["", "planner", "trained", "none", "dock", "räume", "<b>&\"", "recharge", "hierarchical", "A\nB\u{0}"];
+    if random.below(4) == 0 {
+        (*random.pick(&words)).clone_into(name);
     }
 }
 
@@ -51,38 +44,33 @@ fn nonsense(random: &mut mutate::StepRandom) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut files = files().clone();
     let mut changed: Vec<(&str, Vec<u8>)> = Vec::new();
     if random.below(4) > 0 {
-        let (mut names, mut rows) = parse_evaluations(file("evaluations.parquet"), somewhere()).unwrap();
-        renamed(random, &mut names);
-        let copies: Vec<_> = (0..random.below(30)).map(|_| *random.pick(&rows)).collect();
+        let (_, mut rows) = parse_evaluations(file("evaluations.parquet"), somewhere()).unwrap();
+        let copies: Vec<_> = (0..random.below(30)).map(|_| random.pick(&rows).clone()).collect();
         rows.extend(copies);
         rows.truncate(random.below(rows.len() + 1));
         for row in &mut rows {
-            let chosen = |random: &mut mutate::StepRandom, list: &[String]| random.below(list.len()) as u32;
-            row.arm = chosen(random, &names.arms);
-            row.skill = chosen(random, &names.skills);
-            row.variant = chosen(random, &names.variants);
-            row.room = chosen(random, &names.rooms);
+            let names = [&mut row.arm, &mut row.skill, &mut row.variant, &mut row.room];
+            names.into_iter().for_each(|name| renamed(random, name));
             let fields = [&mut row.point, &mut row.seed, &mut row.trials, &mut row.actions];
             let sums = [&mut row.episodes, &mut row.successes, &mut row.steps, &mut row.collisions];
             fields.into_iter().chain(sums).for_each(|field| altered(random, field));
             amount(random, &mut row.reward);
-            amount(random, &mut row.returned);
+            amount(random, &mut row.r#return);
         }
-        changed.push(("evaluations.parquet", write_evaluations(&rows, &names).unwrap()));
+        changed.push(("evaluations.parquet", write_table(&rows).unwrap()));
     }
     if random.below(2) > 0 {
-        let (mut names, mut rows) = parse_trials(file("trials.parquet"), somewhere()).unwrap();
-        renamed(random, &mut names);
+        let (_, mut rows) = parse_trials(file("trials.parquet"), somewhere()).unwrap();
         rows.truncate(random.below(rows.len() + 1));
         for row in &mut rows {
-            (row.arm, row.skill) = (random.below(names.arms.len()) as u32, random.below(names.skills.len()) as u32);
+            [&mut row.arm, &mut row.skill].into_iter().for_each(|name| renamed(random, name));
             let fields = [&mut row.seed, &mut row.trial, &mut row.actions, &mut row.steps, &mut row.collisions];
             fields.into_iter().for_each(|field| altered(random, field));
             let mut reward = f64::from(row.reward);
             amount(random, &mut reward);
             row.reward = reward as f32;
         }
-        changed.push(("trials.parquet", write_trials(&rows, &names).unwrap()));
+        changed.push(("trials.parquet", write_table(&rows).unwrap()));
     }
     if random.below(2) > 0 {
         let name = *random.pick(&TEXTS);

@@ -12,10 +12,10 @@ use skilltree::kernels::evaluate::STATE_ACHIEVED;
 use skilltree::layout::{Episode, LESSON_HEADER, RECORD_WORDS, VALUE_WORD};
 use skilltree::learn::lesson::ENDED;
 use skilltree::run_folder::weights::read_weights;
-use skilltree::run_folder::{Provenance, RunFolder};
+use skilltree::run_folder::{Provenance, RunFolder, Sums};
 use skilltree::train::batch::{train, train_stem};
 use skilltree::train::batch_group::Group;
-use skilltree::train::result::{LearnerResult, RoomSums};
+use skilltree::train::result::LearnerResult;
 use skilltree::train::run::{Observer, Options, run};
 use skilltree::train::trajectories::trajectories;
 use tempfile::TempDir;
@@ -187,11 +187,8 @@ fn the_direct_fit_finds_a_known_curve() {
 
 // Other circumstances.
 
-fn summed(rooms: &[RoomSums]) -> RoomSums {
-    rooms.iter().fold(RoomSums::default(), |mut all, room| {
-        all.add(room);
-        all
-    })
+fn summed(rooms: &[Sums]) -> Sums {
+    rooms.iter().copied().sum()
 }
 
 #[test]

@@ -143,24 +143,12 @@ pub(crate) fn left(dir: &Path, arm: &str) -> BTreeMap<String, Vec<u8>> {
             found.insert(name, std::fs::read(entry.path()).expect("weights"));
         }
     }
-    // Rows name arms and skills by their places in lists that depend on the other arms.
-    let (names, rows) = read_trials(&dir.join(TRIALS)).expect("trials");
-    let own = rows.iter().filter(|row| names.arms[row.arm as usize] == arm);
-    let say = |row: &skilltree::run_folder::TrialRow| {
-        let skill = &names.skills[row.skill as usize];
-        let bare = skilltree::run_folder::TrialRow { arm: 0, skill: 0, ..*row };
-        format!("{skill} {bare:?}\n")
-    };
-    found.insert(TRIALS.to_owned(), own.map(say).collect::<String>().into_bytes());
-    let (names, rows) = read_evaluations(&dir.join(EVALUATIONS)).expect("tests");
-    let own = rows.iter().filter(|row| names.arms[row.arm as usize] == arm);
-    let say = |row: &skilltree::run_folder::EvaluationRow| {
-        let words =
-            [&names.skills[row.skill as usize], &names.variants[row.variant as usize], &names.rooms[row.room as usize]];
-        let bare = skilltree::run_folder::EvaluationRow { arm: 0, skill: 0, variant: 0, room: 0, ..*row };
-        format!("{words:?} {bare:?}\n")
-    };
-    found.insert(EVALUATIONS.to_owned(), own.map(say).collect::<String>().into_bytes());
+    let (_, rows) = read_trials(&dir.join(TRIALS)).expect("trials");
+    let own = rows.iter().filter(|row| row.arm == arm);
+    found.insert(TRIALS.to_owned(), own.map(|row| format!("{row:?}\n")).collect::<String>().into_bytes());
+    let (_, rows) = read_evaluations(&dir.join(EVALUATIONS)).expect("tests");
+    let own = rows.iter().filter(|row| row.arm == arm);
+    found.insert(EVALUATIONS.to_owned(), own.map(|row| format!("{row:?}\n")).collect::<String>().into_bytes());
     found
 }
 

@@ -16,12 +16,12 @@ pub(crate) struct Made {
     pub(crate) trials: Vec<TrialRow>,
 }
 
-fn code(names: &mut Vec<String>, name: &str) -> u32 {
-    let known = names.iter().position(|known| known == name);
-    known.unwrap_or_else(|| {
+/// A name, which is now known.
+fn noted(names: &mut Vec<String>, name: &str) -> String {
+    if !names.iter().any(|known| known == name) {
         names.push(name.to_owned());
-        names.len() - 1
-    }) as u32
+    }
+    name.to_owned()
 }
 
 impl Made {
@@ -30,19 +30,19 @@ impl Made {
         let (trials, actions, rooms) = test;
         for &(room, episodes, successes) in rooms {
             self.tests.push(EvaluationRow {
-                arm: code(&mut self.names.arms, arm),
+                arm: noted(&mut self.names.arms, arm),
                 point: 0,
                 seed,
-                skill: code(&mut self.names.skills, skill),
+                skill: noted(&mut self.names.skills, skill),
                 trials,
                 actions,
-                variant: code(&mut self.names.variants, variant),
-                room: code(&mut self.names.rooms, room),
+                variant: noted(&mut self.names.variants, variant),
+                room: noted(&mut self.names.rooms, room),
                 episodes,
                 successes,
                 steps: 50 * successes + 200 * (episodes - successes),
                 reward: 100.0 * f64::from(successes),
-                returned: f64::from(successes),
+                r#return: f64::from(successes),
                 collisions: 0,
             });
         }
@@ -69,10 +69,10 @@ impl Made {
     pub(crate) fn trial(&mut self, arm: &str, skill: &str, seed: u32, trial: u32, outcome: (u32, f32, u32)) {
         let (steps, reward, collisions) = outcome;
         self.trials.push(TrialRow {
-            arm: code(&mut self.names.arms, arm),
+            arm: noted(&mut self.names.arms, arm),
             point: 0,
             seed,
-            skill: code(&mut self.names.skills, skill),
+            skill: noted(&mut self.names.skills, skill),
             trial,
             actions: 0,
             steps,

@@ -11,8 +11,8 @@ use skilltree::report::resample::Resampler;
 use skilltree::report::summary::summarise;
 use skilltree::report::{ReportError, curves, raster, write};
 use skilltree::run_folder::sensor_readings::write_places;
-use skilltree::run_folder::tables::write_evaluations;
-use skilltree::run_folder::{EvaluationRow, Names, PlaceReading, Provenance, RecordError, RunFolder};
+use skilltree::run_folder::tables::write_table;
+use skilltree::run_folder::{EvaluationRow, Names, PlaceReading, Provenance, RecordError, RunFolder, Sums};
 use skilltree::world::{Pose, World, load};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -44,33 +44,35 @@ fn synthetic(seeds: u32) -> (Names, Vec<EvaluationRow>) {
             let successes = (0..40).filter(|_| (draws.index(1000) as f64) < 1000.0 * skilled).count() as u32;
             let steps = 40 * 200 - successes * (200 - 34 - 5 * room);
             rows.push(EvaluationRow {
-                arm,
+                arm: ARMS[arm as usize].to_owned(),
                 point: 0,
                 seed,
-                skill,
+                skill: SKILLS[skill].to_owned(),
                 trials,
                 actions: 400 + trials * (30 + 60 * arm) + seed,
-                variant: 0,
-                room,
+                variant: "trained".to_owned(),
+                room: names.rooms[room as usize].clone(),
                 episodes: 40,
                 successes,
                 steps,
                 reward: f64::from(successes) * 100.0,
-                returned: f64::from(successes) * 40.0,
+                r#return: f64::from(successes) * 40.0,
                 collisions: steps / 25,
             });
         }
     }
     names.arms.push("planner".into());
     for (skill, room) in [(0, 0), (1, 0), (1, 1), (1, 2)] {
-        let (arm, point, seed, trials, actions, collisions) = (5, 0, 0, 0, 0, 0);
-        let (episodes, successes, steps, reward) = (1000, 998, 27_500 + room * 900, 99_800.0);
-        let (variant, returned) = (0, 40_000.0);
-        #[rustfmt::skip]
-        rows.push(EvaluationRow {
-            arm, point, seed, skill, trials, actions, variant, room,
-            episodes, successes, steps, reward, returned, collisions,
-        });
+        let steps = 27_500 + room * 900;
+        let sums = Sums { episodes: 1000, successes: 998, steps, collisions: 0, reward: 99_800.0, returned: 40_000.0 };
+        let row = EvaluationRow {
+            arm: "planner".to_owned(),
+            skill: SKILLS[skill].to_owned(),
+            variant: "trained".to_owned(),
+            room: names.rooms[room as usize].clone(),
+            ..EvaluationRow::default()
+        };
+        rows.push(row.with_sums(sums));
     }
     (names, rows)
 }
@@ -99,7 +101,7 @@ fn readings(world: &World) -> Vec<PlaceReading> {
 }
 
 fn run_folder(dir: &Path, seeds: u32) {
-    let (names, rows) = synthetic(seeds);
+    let (_, rows) = synthetic(seeds);
     let world = load::parse(OFFICE, Path::new("world.toml")).unwrap();
     let config = "title = \"Synthetic: five <arms> & a planner\"\nseeds = \"0..31\"\n";
     let provenance = Provenance {
@@ -111,7 +113,7 @@ fn run_folder(dir: &Path, seeds: u32) {
         ..Provenance::default()
     };
     let files = [
-        ("evaluations.parquet".to_owned(), write_evaluations(&rows, &names).unwrap()),
+        ("evaluations.parquet".to_owned(), write_table(&rows).unwrap()),
         ("places.json".to_owned(), write_places(&readings(&world)).unwrap()),
     ];
     RunFolder::open(dir, config, &[("world.toml", OFFICE)]).unwrap().finish(files, provenance).unwrap();
@@ -187,8 +189,8 @@ fn the_page_stands_alone_and_says_what_it_must() {
 #[test]
 fn seeds_that_are_missing_are_said_not_averaged_over() {
     let (names, mut rows) = synthetic(4);
-    rows.retain(|row| !(row.arm == 0 && row.skill == 0 && row.trials == 150 && row.seed == 2));
-    rows.retain(|row| !(row.arm == 1 && row.seed == 3));
+    rows.retain(|row| !(row.arm == ARMS[0] && row.skill == SKILLS[0] && row.trials == 150 && row.seed == 2));
+    rows.retain(|row| !(row.arm == ARMS[1] && row.seed == 3));
     let summary = summarise(&names, &rows, &[0, 1, 2, 3], &[]);
     let (dock, recharge) = (&summary.skills[0], &summary.skills[1]);
     assert_eq!((dock.name.as_str(), dock.series.len()), ("dock", 4));
@@ -210,7 +212,7 @@ fn seeds_that_are_missing_are_said_not_averaged_over() {
     assert_eq!(summary.skills[0].series[0].trials_to(1.01), [None; 4]);
     let by_hand: u32 = rows
         .iter()
-        .filter(|row| row.arm == 4 && row.skill == 1 && row.trials == 300 && row.seed == 2)
+        .filter(|row| row.arm == ARMS[4] && row.skill == SKILLS[1] && row.trials == 300 && row.seed == 2)
         .map(|row| row.successes)
         .sum();
     close(recharge.series[4].last().scores[2].success(), f64::from(by_hand) / 120.0, 1e-15);
@@ -219,7 +221,7 @@ fn seeds_that_are_missing_are_said_not_averaged_over() {
 #[test]
 fn sweep_points_are_series_of_their_own() {
     let (names, mut rows) = synthetic(2);
-    rows.retain(|row| row.arm == 0);
+    rows.retain(|row| row.arm == ARMS[0]);
     let mut second = rows.clone();
     second.iter_mut().for_each(|row| row.point = 1);
     rows.extend(second);

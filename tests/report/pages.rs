@@ -4,7 +4,7 @@ use crate::comparison::example;
 use crate::made::Made;
 use crate::{OFFICE, scratch};
 use skilltree::report::{text, write};
-use skilltree::run_folder::tables::{write_evaluations, write_trials};
+use skilltree::run_folder::tables::write_table;
 use skilltree::run_folder::trajectories::write_trajectories;
 use skilltree::run_folder::{Provenance, RunFolder, Trajectory};
 use std::fs;
@@ -24,8 +24,8 @@ fn finish(dir: &Path, made: &Made, config: &str, worlds: &[(&str, &str)], trajec
     let seeds = made.summary().skills[0].series[0].last().scores.iter().map(|score| score.seed).collect();
     let provenance = Provenance { version: "0.1.0".into(), backend: "cpu".into(), seeds, ..Provenance::default() };
     let files = [
-        ("trials.parquet".to_owned(), write_trials(&made.trials, &made.names).unwrap()),
-        ("evaluations.parquet".to_owned(), write_evaluations(&made.tests, &made.names).unwrap()),
+        ("trials.parquet".to_owned(), write_table(&made.trials).unwrap()),
+        ("evaluations.parquet".to_owned(), write_table(&made.tests).unwrap()),
         ("trajectories.json".to_owned(), write_trajectories(trajectories).unwrap()),
     ];
     RunFolder::open(dir, config, worlds).unwrap().finish(files, provenance).unwrap();

@@ -92,7 +92,7 @@ fn lanes(lane: u32, x: f32, word: u32) {
 }
 
 @compute @workgroup_size(LANES)
-fn probe(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+fn arithmetic_check(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     let number = group.x * LANES + lane;
     let at = number * QUESTION_WORDS;
     answer_base = number * ANSWER_WORDS;

@@ -24,7 +24,7 @@ fn nested(outer: u32, inner: u32) -> u32 {
 }
 
 @compute @workgroup_size(LANES)
-fn canary(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+fn loop_limit(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     if lane == 0u {
         if group.x == 0u {
             counts[0] = single(bounds[0]);

@@ -160,7 +160,7 @@ fn lanes(answers: &mut [Answer; LANES], x: &[f32; LANES], words: &[u32; LANES]) 
 }
 
 /// Answers the questions of one workgroup.
-pub fn probe(questions: &[Question; LANES]) -> [Answer; LANES] {
+pub fn arithmetic_check(questions: &[Question; LANES]) -> [Answer; LANES] {
     let mut answers = [[0; ANSWER_WORDS]; LANES];
     for (answer, question) in answers.iter_mut().zip(questions) {
         let [x, p, angle, tiny, a, b, c, d] = std::array::from_fn(|word| f32::from_bits(question[word]));

@@ -1,11 +1,11 @@
 //! Is this adapter exact? The shipped functions answer the same questions on the adapter and in Rust, and
 //! the answers are compared as bits.
 
-use super::arithmetic_check::{ANSWER_WORDS, Answer, NAMES, QUESTION_WORDS, Question, SUBNORMAL, probe};
+use super::arithmetic_check::{ANSWER_WORDS, Answer, NAMES, QUESTION_WORDS, Question, SUBNORMAL, arithmetic_check};
 use super::device::Device;
-use super::loop_limit::{self, BOUNDS, canary};
+use super::loop_limit::{self, BOUNDS, loop_limit};
 use super::pipeline::Pipeline;
-use super::source::{CANARY, PROBE};
+use super::source::{LOOP_LIMIT, ARITHMETIC_CHECK};
 use crate::backend::BackendError;
 use crate::backend::parity::UNWRITTEN;
 use crate::layout::LANES;
@@ -37,10 +37,10 @@ pub fn examine(device: &Device) -> Result<Verdict, BackendError> {
     let answers = ask(device, &questions)?;
     let mut verdict = compare(&questions, &answers);
     let counts = count_turns(device)?;
-    let expected = canary(BOUNDS);
+    let expected = loop_limit(BOUNDS);
     if counts[2] != expected[2] {
         let message = format!("the driver ends loops after fewer than {} turns", loop_limit::SAFE_TURNS);
-        return Err(BackendError::Device { kernel: CANARY.name, message });
+        return Err(BackendError::Device { kernel: LOOP_LIMIT.name, message });
     }
     if counts != expected {
         verdict.loop_budget = Some(BOUNDS[0] - 1);
@@ -88,16 +88,16 @@ fn question(number: u32) -> Question {
 /// # Errors
 /// Where the device fails.
 pub fn ask(device: &Device, questions: &[Question]) -> Result<Vec<Answer>, BackendError> {
-    let pipeline = Pipeline::new(device, PROBE)?;
+    let pipeline = Pipeline::new(device, ARITHMETIC_CHECK)?;
     let storage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
-    let asked = device.buffer(PROBE.name, size_of_val(questions) as u64, storage)?;
+    let asked = device.buffer(ARITHMETIC_CHECK.name, size_of_val(questions) as u64, storage)?;
     let mut answers = vec![[UNWRITTEN; ANSWER_WORDS]; questions.len()];
-    let answered = device.buffer(PROBE.name, size_of_val(&answers[..]) as u64, storage)?;
-    device.upload(PROBE.name, &asked, bytemuck::cast_slice(questions))?;
-    device.upload(PROBE.name, &answered, bytemuck::cast_slice(&answers))?;
+    let answered = device.buffer(ARITHMETIC_CHECK.name, size_of_val(&answers[..]) as u64, storage)?;
+    device.upload(ARITHMETIC_CHECK.name, &asked, bytemuck::cast_slice(questions))?;
+    device.upload(ARITHMETIC_CHECK.name, &answered, bytemuck::cast_slice(&answers))?;
     let bind_group = pipeline.bind(device, &[&asked, &answered]);
     pipeline.dispatch(device, &bind_group, (questions.len() / LANES) as u32, 1)?;
-    device.download(PROBE.name, &answered, bytemuck::cast_slice_mut(&mut answers))?;
+    device.download(ARITHMETIC_CHECK.name, &answered, bytemuck::cast_slice_mut(&mut answers))?;
     Ok(answers)
 }
 
@@ -109,7 +109,7 @@ pub fn compare(questions: &[Question], answers: &[Answer]) -> Verdict {
     for (group, (asked, found)) in
         questions.as_chunks::<LANES>().0.iter().zip(answers.as_chunks::<LANES>().0).enumerate()
     {
-        for (lane, (wanted, found)) in probe(asked).iter().zip(found).enumerate() {
+        for (lane, (wanted, found)) in arithmetic_check(asked).iter().zip(found).enumerate() {
             for word in 0..ANSWER_WORDS {
                 if wanted[word] != found[word] {
                     differing[word] += 1;
@@ -136,14 +136,14 @@ pub fn compare(questions: &[Question], answers: &[Answer]) -> Verdict {
 
 /// The states that the canary's loops reach on the device.
 fn count_turns(device: &Device) -> Result<[u32; 3], BackendError> {
-    let pipeline = Pipeline::new(device, CANARY)?;
+    let pipeline = Pipeline::new(device, LOOP_LIMIT)?;
     let storage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
-    let bounds = device.buffer(CANARY.name, size_of_val(&BOUNDS) as u64, storage)?;
+    let bounds = device.buffer(LOOP_LIMIT.name, size_of_val(&BOUNDS) as u64, storage)?;
     let mut counts = <[u32; 3]>::zeroed();
-    let counted = device.buffer(CANARY.name, size_of_val(&counts) as u64, storage)?;
-    device.upload(CANARY.name, &bounds, bytemuck::bytes_of(&BOUNDS))?;
+    let counted = device.buffer(LOOP_LIMIT.name, size_of_val(&counts) as u64, storage)?;
+    device.upload(LOOP_LIMIT.name, &bounds, bytemuck::bytes_of(&BOUNDS))?;
     let bind_group = pipeline.bind(device, &[&bounds, &counted]);
     pipeline.dispatch(device, &bind_group, 3, 1)?;
-    device.download(CANARY.name, &counted, bytemuck::bytes_of_mut(&mut counts))?;
+    device.download(LOOP_LIMIT.name, &counted, bytemuck::bytes_of_mut(&mut counts))?;
     Ok(counts)
 }

@@ -3,8 +3,8 @@
 use super::loop_limit::SAFE_TURNS;
 use crate::env::events::{SIDE_FIRST, SIDE_LAST};
 use crate::env::workgroup::CohortData;
-use crate::layout::{BASE_WORDS, EVENTS, LANES, MAX_CHILDREN, SKILL_CODE, SkillShape, WorldUniform};
-use crate::policy::features::{GROUP_APPLICABLE, GROUP_VALUES};
+use crate::layout::sensors::{GROUP_APPLICABLE, GROUP_VALUES};
+use crate::layout::{ELEMENTARY_STEP_WORDS, EVENTS, LANES, MAX_CHILDREN, SKILL_CODE, SkillShape, WorldUniform};
 use std::time::Duration;
 
 /// Duration that dispatches aim at.
@@ -120,7 +120,7 @@ fn act_turns(shared: &CohortData, root: usize) -> u32 {
     let world = &shared.floor.plan;
     let plan = &shared.skills[root];
     let rooms = turns(world.rooms, 0);
-    let sense = step_turns(shared) + turns(SIDE_LAST - SIDE_FIRST + 1, 0) + turns(EVENTS as u32, 0);
+    let sense = step_turns(shared) + turns((SIDE_LAST - SIDE_FIRST) as u32 + 1, 0) + turns(EVENTS as u32, 0);
     let watched = shared.skills[..root].iter().enumerate().filter(|(n, _)| (plan.watched >> n) & 1 == 1);
     let watch = watched.map(|(_, plan)| think_turns(plan, world) + turns(plan.children, 0)).sum::<u32>();
     let choose = think_turns(plan, world) + choice_turns(plan);
@@ -156,7 +156,7 @@ fn replay_turns(plan: &SkillShape) -> u32 {
 
 /// Completing the record of a skill over skills.
 fn extend_turns(plan: &SkillShape, world: &WorldUniform) -> u32 {
-    let high = plan.record_words > BASE_WORDS as u32;
+    let high = plan.record_words > ELEMENTARY_STEP_WORDS as u32;
     if high { turns(plan.children, 0) + turns(world.rooms, 0) } else { 0 }
 }
 

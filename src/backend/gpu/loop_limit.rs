@@ -28,6 +28,6 @@ fn nested(outer: u32, inner: u32) -> u32 {
 }
 
 /// The three states that an adapter must reach.
-pub fn canary(bounds: [u32; 4]) -> [u32; 3] {
+pub fn loop_limit(bounds: [u32; 4]) -> [u32; 3] {
     [single(bounds[0]), nested(bounds[1], bounds[2]), single(bounds[3])]
 }

@@ -29,7 +29,7 @@ use in_flight::{Flight, IN_FLIGHT, Rounds, Traffic};
 use pipeline_cache::Stage;
 use run_evaluation::finish;
 use shards::{Common, Shard};
-use source::{ADVANCE, EVALUATE, Kernel, STEP};
+use source::{TRAIN, EVALUATE, Kernel, STEP};
 use std::ops::Range;
 use std::time::{Duration, Instant};
 use wgpu::BufferUsages;
@@ -82,7 +82,7 @@ struct Loaded {
 }
 
 fn nothing_loaded() -> BackendError {
-    BackendError::Device { kernel: ADVANCE.name, message: "no cohort is loaded".to_owned() }
+    BackendError::Device { kernel: TRAIN.name, message: "no cohort is loaded".to_owned() }
 }
 
 impl GpuBackend {
@@ -120,7 +120,7 @@ impl GpuBackend {
         Ok(Self {
             device,
             verdict,
-            advance: stage(ADVANCE),
+            advance: stage(TRAIN),
             evaluate: stage(EVALUATE),
             step: stage(STEP),
             traffic: Traffic::new(options.in_flight.unwrap_or(IN_FLIGHT)),
@@ -191,13 +191,13 @@ impl Backend for GpuBackend {
         // The old cohort's memory is free before the new one's is taken.
         self.loaded = None;
         self.advance.hold(wanted(&cohort).into_iter().filter(|words| *words <= self.held).collect());
-        let dispatch = self.uniform(ADVANCE.name)?;
+        let dispatch = self.uniform(TRAIN.name)?;
         let (pipeline, governor) = self.advance.ready(&self.device)?;
         let turns = quantum_turns(&cohort.shared, holders(&cohort, pipeline.held()));
         let most = ceiling(self.verdict.loop_budget, turns);
         governor.set_ceiling(most);
         self.evaluate.set_ceiling(most);
-        let common = Common::new(&self.device, ADVANCE.name, &cohort.shared)?;
+        let common = Common::new(&self.device, TRAIN.name, &cohort.shared)?;
         let shards = shards::upload(&self.device, &cohort, self.shard)?;
         let bindings = shards
             .iter()
@@ -208,7 +208,7 @@ impl Backend for GpuBackend {
                 pipeline.bind(&self.device, &buffers)
             })
             .collect();
-        self.device.sound(ADVANCE.name)?;
+        self.device.sound(TRAIN.name)?;
         self.loaded = Some(Loaded { cohort, common, shards, bindings, dispatch, rounds: Rounds::default() });
         Ok(())
     }

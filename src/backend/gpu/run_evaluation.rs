@@ -5,7 +5,7 @@ use super::dispatch_size::Share;
 use super::in_flight::{Flight, Rounds};
 use super::source::EVALUATE;
 use crate::backend::BackendError;
-use crate::kernels::evaluate::STATE_ACHIEVED;
+use crate::layout::EPISODE_TERMINATED;
 use crate::layout::{Dispatch, Episode};
 
 /// No trial is longer than this: step limits are at most 255.
@@ -36,7 +36,7 @@ pub fn finish(
         }
         flight.land()?;
         device.download(EVALUATE.name, results, bytemuck::cast_slice_mut(episodes))?;
-        let running = episodes.iter().filter(|episode| episode.state < STATE_ACHIEVED).count();
+        let running = episodes.iter().filter(|episode| episode.state < EPISODE_TERMINATED).count();
         let busy = 2 * running >= episodes.len();
         rounds.looked(busy, flight.learn(busy));
         if running == 0 {

@@ -10,7 +10,7 @@ use std::ops::Range;
 use wgpu::BufferUsages;
 
 /// Label of the buffers that outlive a kernel.
-const COHORT: &str = "advance";
+const COHORT: &str = "train";
 /// Memory that is taken for granted on a graphics card.
 const CARD: u64 = 4 << 30;
 /// Share of the host's free memory that a cohort may take.

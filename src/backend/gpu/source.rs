@@ -1,4 +1,4 @@
-//! The text of every shipped kernel: an ordered list of parts, opened by the shared constants and structs.
+//! The text of every shipped kernel: its files, opened by the shared constants and structs.
 
 use crate::layout::prelude::prelude;
 
@@ -11,9 +11,9 @@ pub struct Part {
     pub text: &'static str,
 }
 
-macro_rules! part {
-    ($path:literal) => {
-        Part { path: $path, text: include_str!(concat!("../../../shaders/", $path)) }
+macro_rules! parts {
+    ($($path:literal),* $(,)?) => {
+        &[$(Part { path: $path, text: include_str!(concat!("../../../shaders/", $path)) }),*]
     };
 }
 
@@ -22,107 +22,78 @@ macro_rules! part {
 pub struct Kernel {
     /// One word: file, entry point and label.
     pub name: &'static str,
-    /// Its own file first, which declares the bindings, then everything it calls.
-    pub parts: &'static [Part],
+    /// Lists of files: its own first, which declares the bindings, then everything it calls.
+    pub parts: &'static [&'static [Part]],
 }
 
 impl Kernel {
+    /// Its files.
+    pub fn files(&self) -> impl Iterator<Item = &'static Part> {
+        self.parts.iter().copied().flatten()
+    }
+
     /// The complete WGSL text.
     pub fn wgsl(&self) -> String {
         let mut text = prelude();
-        for part in self.parts {
+        for part in self.files() {
             text.push_str(part.text);
         }
         text
     }
 }
 
-const RNG: Part = part!("math/rng.wgsl");
-const FUNCTIONS: Part = part!("math/functions.wgsl");
-const LANES: Part = part!("math/reduce.wgsl");
-const MOVE: Part = part!("env/motion.wgsl");
-const COLLIDE: Part = part!("env/contact.wgsl");
-const SONAR: Part = part!("env/sonar.wgsl");
-const LIGHT: Part = part!("env/light.wgsl");
-const ACT: Part = part!("policy/hierarchy.wgsl");
-const OBSERVE: Part = part!("env/observe.wgsl");
-const REMEMBER: Part = part!("env/memory.wgsl");
-const ENCODE: Part = part!("policy/features.wgsl");
-const CONSULT: Part = part!("policy/planner_table.wgsl");
-const PERSIST: Part = part!("policy/persistence.wgsl");
-const REWARD: Part = part!("env/events.wgsl");
-const CHOOSE: Part = part!("policy/select.wgsl");
-const START: Part = part!("env/reset.wgsl");
-const FORWARD: Part = part!("qnet/forward.wgsl");
-const BACKWARD: Part = part!("qnet/backward.wgsl");
-const RECORD: Part = part!("learn/lesson.wgsl");
-const REPLAY: Part = part!("learn/td_lambda.wgsl");
+/// Arithmetic.
+const MATH: &[Part] = parts!["math/rng.wgsl", "math/functions.wgsl", "math/reduce.wgsl"];
+/// A body that moves and senses.
+const BODY: &[Part] = parts![
+    "env/motion.wgsl",
+    "env/contact.wgsl",
+    "env/sonar.wgsl",
+    "env/light.wgsl",
+    "env/observation.wgsl",
+    "env/observe.wgsl",
+];
+/// A robot in a trial, and what decides for it.
+const TRIAL: &[Part] = parts![
+    "env/reset.wgsl",
+    "env/memory.wgsl",
+    "env/events.wgsl",
+    "env/step.wgsl",
+    "policy/features.wgsl",
+    "policy/applicability.wgsl",
+    "policy/persistence.wgsl",
+    "policy/select.wgsl",
+    "policy/planner_table.wgsl",
+    "policy/hierarchy.wgsl",
+    "qnet/forward.wgsl",
+];
+/// Learning from trials.
+const LEARNING: &[Part] = parts![
+    "qnet/weights.wgsl",
+    "qnet/gradient.wgsl",
+    "qnet/optimiser/sgd.wgsl",
+    "qnet/optimiser/adam.wgsl",
+    "qnet/optimiser/adam_rows.wgsl",
+    "qnet/backward.wgsl",
+    "learn/lesson.wgsl",
+    "learn/td_lambda.wgsl",
+];
 
 /// Moves learners on.
-pub const ADVANCE: Kernel = Kernel {
-    name: "advance",
-    parts: &[
-        part!("kernels/train.wgsl"),
-        RNG,
-        FUNCTIONS,
-        LANES,
-        MOVE,
-        COLLIDE,
-        SONAR,
-        LIGHT,
-        ACT,
-        OBSERVE,
-        REMEMBER,
-        ENCODE,
-        CONSULT,
-        PERSIST,
-        REWARD,
-        CHOOSE,
-        START,
-        FORWARD,
-        BACKWARD,
-        RECORD,
-        REPLAY,
-    ],
-};
+pub const TRAIN: Kernel = Kernel { name: "train", parts: &[parts!["kernels/train.wgsl"], MATH, BODY, TRIAL, LEARNING] };
 
 /// Runs test trials.
-pub const EVALUATE: Kernel = Kernel {
-    name: "evaluate",
-    parts: &[
-        part!("kernels/evaluate.wgsl"),
-        RNG,
-        FUNCTIONS,
-        LANES,
-        MOVE,
-        COLLIDE,
-        SONAR,
-        LIGHT,
-        ACT,
-        OBSERVE,
-        REMEMBER,
-        ENCODE,
-        CONSULT,
-        PERSIST,
-        REWARD,
-        CHOOSE,
-        START,
-        FORWARD,
-    ],
-};
+pub const EVALUATE: Kernel = Kernel { name: "evaluate", parts: &[parts!["kernels/evaluate.wgsl"], MATH, BODY, TRIAL] };
 
 /// Moves robots under given actions.
-pub const STEP: Kernel = Kernel {
-    name: "step",
-    parts: &[part!("kernels/step.wgsl"), RNG, FUNCTIONS, LANES, MOVE, COLLIDE, SONAR, LIGHT, OBSERVE],
-};
+pub const STEP: Kernel = Kernel { name: "step", parts: &[parts!["kernels/step.wgsl"], MATH, BODY] };
 
 /// Asks an adapter for the bits of the shipped arithmetic.
-pub const PROBE: Kernel =
-    Kernel { name: "probe", parts: &[part!("backend/gpu/arithmetic_check.wgsl"), RNG, FUNCTIONS, LANES] };
+pub const ARITHMETIC_CHECK: Kernel =
+    Kernel { name: "arithmetic_check", parts: &[parts!["backend/gpu/arithmetic_check.wgsl"], MATH] };
 
 /// Counts how many turns a loop really takes.
-pub const CANARY: Kernel = Kernel { name: "canary", parts: &[part!("backend/gpu/loop_limit.wgsl")] };
+pub const LOOP_LIMIT: Kernel = Kernel { name: "loop_limit", parts: &[parts!["backend/gpu/loop_limit.wgsl"]] };
 
 /// Every shipped kernel.
-pub const KERNELS: &[Kernel] = &[ADVANCE, EVALUATE, STEP, PROBE, CANARY];
+pub const KERNELS: &[Kernel] = &[TRAIN, EVALUATE, STEP, ARITHMETIC_CHECK, LOOP_LIMIT];

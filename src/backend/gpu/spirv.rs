@@ -145,7 +145,7 @@ pub fn decorate(words: &[u32]) -> Vec<u32> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::source::{ADVANCE, KERNELS};
+    use super::super::source::{TRAIN, KERNELS};
     use super::*;
 
     fn count(words: &[u32], wanted: impl Fn(u32, &[u32]) -> bool) -> usize {
@@ -162,7 +162,7 @@ mod tests {
     /// SPIR-V as naga writes it, and as it is compiled.
     fn both(kernel: &Kernel) -> (Vec<u32>, Vec<u32>) {
         let checked = check(&kernel.wgsl()).expect(kernel.name);
-        let held = (kernel.name == ADVANCE.name).then(|| ("HELD".to_owned(), f64::from(LENGTH)));
+        let held = (kernel.name == TRAIN.name).then(|| ("HELD_WORDS".to_owned(), f64::from(LENGTH)));
         let overrides: Overrides = held.into_iter().collect();
         let (module, info) =
             naga::back::pipeline_constants::process_overrides(&checked.module, &checked.info, None, &overrides)
@@ -199,7 +199,7 @@ mod tests {
             let (all, mut spared) = (zeroed(&before), zeroed(&before));
             spared.retain(|variable| !zeroed(&after).contains(variable));
             assert_eq!(all.len(), shared, "{}", kernel.name);
-            assert_eq!(spared.len(), usize::from(kernel.name == ADVANCE.name), "{}", kernel.name);
+            assert_eq!(spared.len(), usize::from(kernel.name == TRAIN.name), "{}", kernel.name);
             for variable in spared {
                 let pointer = find(&after, op::VARIABLE, 2, variable).expect("declared")[1];
                 let array = find(&after, POINTER, 1, pointer).expect("a pointer")[3];
@@ -219,12 +219,12 @@ mod tests {
             assert_eq!(count(&after, is_decoration), floats, "{}", kernel.name);
             assert_eq!(after.len() + 3 * spared, before.len() + 3 * floats, "{}", kernel.name);
         }
-        assert!(count(&both(&ADVANCE).1, is_decoration) > 100);
+        assert!(count(&both(&TRAIN).1, is_decoration) > 100);
     }
 
     #[test]
     fn decorations_stand_before_the_first_type_and_nothing_else_moves() {
-        let (before, _) = both(&ADVANCE);
+        let (before, _) = both(&TRAIN);
         let after = decorate(&before);
         let mut types_seen = false;
         for (opcode, ..) in instructions(&after) {

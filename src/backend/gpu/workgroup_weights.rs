@@ -5,17 +5,17 @@
 use super::device::Device;
 use crate::backend::Cohort;
 use crate::layout::{HyperParams, SkillShape};
-use crate::qnet::forward::lanes_of;
+use crate::qnet::forward::lanes_used;
 use naga::{AddressSpace, Module};
 
 /// Name of the override.
-pub const HELD: &str = "HELD";
+pub const HELD: &str = "HELD_WORDS";
 /// Bytes that no variable's alignment exceeds.
 const ALIGNMENT: u32 = 16;
 
 /// Words that a skill's weights take where they are held.
 fn words(plan: &SkillShape, params: &HyperParams) -> u32 {
-    plan.nets * plan.rows * lanes_of(params.hidden) as u32
+    plan.nets * plan.rows * lanes_used(params.hidden) as u32
 }
 
 /// Words that each skill of each learner takes, with the skill's number; none where it is not trained.
@@ -67,13 +67,13 @@ pub fn shared_bytes(module: &Module) -> Result<u32, String> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::source::ADVANCE;
+    use super::super::source::TRAIN;
     use super::super::spirv::check;
     use super::*;
 
     #[test]
     fn every_device_has_room_for_a_word_and_larger_ones_for_more() {
-        let taken = shared_bytes(&check(&ADVANCE.wgsl()).expect("valid").module).expect("sizes");
+        let taken = shared_bytes(&check(&TRAIN.wgsl()).expect("valid").module).expect("sizes");
         // Nets of docking: one for all actions; six of 16 units; six of 32.
         let wanted = [1_920, 5_280, 10_560];
         for (limit, held) in [(0, 1), (16 << 10, 1_920), (32 << 10, 5_280), (48 << 10, 10_560)] {

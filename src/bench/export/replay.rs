@@ -6,9 +6,11 @@ use crate::bench::benchmarks::UpdateRule;
 use crate::bench::executor::open_cpu;
 use crate::bench::taught_replay::TaughtReplay;
 use crate::bench::{BenchError, compare};
-use crate::layout::{BASE_WORDS, LANES, LESSON_HEADER, RAYS, SkillShape};
-use crate::policy::features::{GROUP_BUMPERS, GROUP_LIGHT, GROUP_SONAR};
-use crate::qnet::forward::net_of;
+use crate::env::workgroup::Workgroup;
+use crate::kernels::plain::PLAIN;
+use crate::layout::{LANES, LearnerState};
+use crate::learn::lesson::{LESSON_STEPS, choice_child};
+use bytemuck::Zeroable;
 use serde_json::{Map, Value, json};
 
 /// The layers of a net as it begins.
@@ -42,14 +44,18 @@ pub(super) fn replay(learners: u32) -> Result<(Vec<ExportTensor>, Map<String, Va
     let (mut child, mut reward) = (vec![0; bank * steps], vec![0.0; bank * steps]);
     for lesson in 0..bank {
         let at = skill.bank_offset as usize + lesson * skill.lesson_stride as usize;
-        let words = &shared.bank[at..at + skill.lesson_stride as usize];
-        length[lesson] = words[0] as i32;
-        let records = &words[LESSON_HEADER..].as_chunks::<BASE_WORDS>().0[..words[0] as usize];
-        for (step, record) in records.iter().enumerate() {
+        let mut group = Workgroup {
+            state: LearnerState { replay_lesson: at as u32, replay_taught: 1, ..LearnerState::zeroed() },
+            ..Workgroup::new(shared, std::slice::from_ref(&params), &PLAIN)
+        };
+        length[lesson] = group.lesson_word(LESSON_STEPS) as i32;
+        for step in 0..length[lesson] as usize {
+            group.load_step(step);
+            group.encode(0, false);
             let row = lesson * steps + step;
-            input[row * inputs..(row + 1) * inputs].copy_from_slice(&encode(record, &skill, &shared.tables));
-            child[row] = (record[8] & 0xff) as i32;
-            reward[row] = f32::from_bits(record[9]) * params.value_scale;
+            input[row * inputs..(row + 1) * inputs].copy_from_slice(&group.inputs[..inputs]);
+            child[row] = choice_child(group.record.choice) as i32;
+            reward[row] = group.record.reward * params.value_scale;
         }
     }
     let given: Vec<i32> = (0..learners as usize)
@@ -119,7 +125,7 @@ type Net = Vec<[f32; LANES]>;
 fn nets(cohort: &Cohort) -> Vec<Net> {
     let skill = &cohort.shared.skills[0];
     let rows = |words: &[f32], child: u32| {
-        words[net_of(skill, 0, child) as usize..].as_chunks().0[..skill.rows as usize].to_vec()
+        words[skill.net_offset(child)..].as_chunks().0[..skill.rows as usize].to_vec()
     };
     let learners = cohort.nets.chunks(cohort.nets_stride);
     learners.flat_map(|words| (0..skill.children).map(move |child| rows(words, child))).collect()
@@ -139,21 +145,4 @@ fn layers(nets: &[Net], inputs: usize) -> [Layer; 4] {
         (vec![LANES], row(inputs + 1)),
         (vec![], nets.iter().map(|net| net[inputs + 2][0]).collect()),
     ]
-}
-
-/// Inputs of docking's nets from one recorded step.
-fn encode(record: &[u32], skill: &SkillShape, tables: &[u32]) -> Vec<f32> {
-    let mut x = Vec::with_capacity(skill.inputs as usize);
-    for group in 0..skill.groups as usize {
-        match skill.group_kind[group] {
-            GROUP_SONAR => x.extend((0..RAYS).map(|ray| {
-                let byte = (record[ray / 4] >> (8 * (ray % 4))) & 0xff;
-                f32::from_bits(tables[(skill.group_table[group] + byte) as usize])
-            })),
-            GROUP_LIGHT => x.extend((0..RAYS).map(|ray| ((record[6] >> ray) & 1) as f32)),
-            GROUP_BUMPERS => x.extend((0..4).map(|side| ((record[6] >> (24 + side)) & 1) as f32)),
-            other => unreachable!("docking has no input group {other}"),
-        }
-    }
-    x
 }

@@ -38,8 +38,8 @@ impl StepNoise {
             noise(robot.noise.kind, x, y)
         };
         // Six draws from number `first` on have a word for each of 24 bearings.
-        let shared = |first: u32, bearing: usize| {
-            coarse_noise(robot.noise.kind, draw(stream, first + bearing as u32 % 6)[bearing / 6])
+        let shared = |first: usize, bearing: usize| {
+            coarse_noise(robot.noise.kind, draw(stream, (first + bearing % 6) as u32)[bearing / 6])
         };
         Self {
             slip: robot.noise.actuator * own(DRAW_ACTUATOR) + 1.0,

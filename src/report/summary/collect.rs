@@ -22,16 +22,18 @@ pub fn summarise(names: &Names, rows: &[EvaluationRow], seeds: &[u32], diverged:
     let mut altered: BTreeMap<Key, Cells> = BTreeMap::new();
     let mut bounds: BTreeMap<(u32, u32), Vec<Score>> = BTreeMap::new();
     for row in rows.iter().filter(|row| row.episodes > 0) {
-        let key = (row.skill, row.arm, row.point);
-        let scores = if of_planner(names, row.arm).is_some() {
-            bounds.entry((row.skill, row.arm)).or_default()
-        } else if names.variants[row.variant as usize] == TRAINED {
+        let (arm, skill) = (Names::number(&names.arms, &row.arm), Names::number(&names.skills, &row.skill));
+        let key = (skill, arm, row.point);
+        let scores = if of_planner(names, arm).is_some() {
+            bounds.entry((skill, arm)).or_default()
+        } else if row.variant == TRAINED {
             sums.entry(key).or_default().entry(row.trials).or_default().entry(row.seed).or_default()
         } else {
-            altered.entry(key).or_default().entry(row.variant).or_default().entry(row.seed).or_default()
+            let variant = Names::number(&names.variants, &row.variant);
+            altered.entry(key).or_default().entry(variant).or_default().entry(row.seed).or_default()
         };
         scores.resize(rooms, Score::default());
-        scores[row.room as usize].add(&row.into());
+        scores[Names::number(&names.rooms, &row.room) as usize].add(&row.into());
     }
     divergence::complete(names, diverged, &mut sums, &mut altered);
     let swept = sums.keys().any(|&(_, _, point)| point > 0);
@@ -78,11 +80,13 @@ fn of_planner(names: &Names, arm: u32) -> Option<Option<&str>> {
 /// An arm's rows come in the order of its tests, so the root's come last.
 fn arms(names: &Names, rows: &[EvaluationRow]) -> Vec<Arm> {
     let mut skills: BTreeMap<u32, (u32, BTreeSet<u32>)> = BTreeMap::new();
-    let learned = |row: &&EvaluationRow| of_planner(names, row.arm).is_none();
-    for row in rows.iter().filter(learned) {
-        let (root, all) = skills.entry(row.arm).or_default();
-        *root = row.skill;
-        all.insert(row.skill);
+    for row in rows {
+        let (arm, skill) = (Names::number(&names.arms, &row.arm), Names::number(&names.skills, &row.skill));
+        if of_planner(names, arm).is_none() {
+            let (root, all) = skills.entry(arm).or_default();
+            *root = skill;
+            all.insert(skill);
+        }
     }
     let arm = |(arm, (root, all)): (u32, (u32, BTreeSet<u32>))| Arm {
         name: names.arms[arm as usize].clone(),

@@ -73,15 +73,16 @@ impl Score {
 
 impl From<&EvaluationRow> for Score {
     fn from(row: &EvaluationRow) -> Self {
+        let sums = row.sums();
         Self {
             seed: row.seed,
             actions: row.actions,
-            episodes: u64::from(row.episodes),
-            successes: u64::from(row.successes),
-            steps: u64::from(row.steps),
-            collisions: u64::from(row.collisions),
-            reward: row.reward,
-            returned: row.returned,
+            episodes: u64::from(sums.episodes),
+            successes: u64::from(sums.successes),
+            steps: u64::from(sums.steps),
+            collisions: u64::from(sums.collisions),
+            reward: sums.reward,
+            returned: sums.returned,
         }
     }
 }

@@ -7,7 +7,7 @@ use crate::OFFICE;
 use skilltree::report::summary::{Diverged, Summary, summarise};
 use skilltree::report::sweep::Swept;
 use skilltree::run_folder::sweep::{Axis, AxisValue, Design, FILE, Scale, write_sweep};
-use skilltree::run_folder::tables::write_evaluations;
+use skilltree::run_folder::tables::write_table;
 use skilltree::run_folder::{EvaluationRow, Names, Provenance, RunFolder, Sweep};
 use std::path::Path;
 
@@ -42,19 +42,19 @@ pub(crate) fn rows(
             let successes = last * trials * (300 + slow) / (300 * (trials + slow));
             let steps = 200 * 40 - 150 * successes;
             rows.push(EvaluationRow {
-                arm,
+                arm: ["hierarchical", "monolithic"][arm as usize].to_owned(),
                 point,
                 seed,
-                skill: 0,
+                skill: "recharge".to_owned(),
                 trials,
                 actions: 100 + 60 * trials,
-                variant: 0,
-                room: 0,
+                variant: "trained".to_owned(),
+                room: "A".to_owned(),
                 episodes: 40,
                 successes,
                 steps,
                 reward: f64::from(successes),
-                returned: f64::from(successes),
+                r#return: f64::from(successes),
                 collisions: 0,
             });
         }
@@ -110,10 +110,10 @@ pub(crate) fn swept() -> Swept {
     Swept::new(thresholds(), &summary(&names, &rows, SEEDS, &[]), &seeds)
 }
 
-pub(crate) fn folder(dir: &Path, sweep: &Sweep, names: &Names, rows: &[EvaluationRow], seeds: u32) {
+pub(crate) fn folder(dir: &Path, sweep: &Sweep, rows: &[EvaluationRow], seeds: u32) {
     let provenance = Provenance { backend: "cpu".into(), seeds: (0..seeds).collect(), ..Provenance::default() };
     let files = [
-        ("evaluations.parquet".to_owned(), write_evaluations(rows, names).unwrap()),
+        ("evaluations.parquet".to_owned(), write_table(rows).unwrap()),
         (FILE.to_owned(), write_sweep(sweep).unwrap()),
     ];
     RunFolder::open(dir, "", &[("world.toml", OFFICE)]).unwrap().finish(files, provenance).unwrap();

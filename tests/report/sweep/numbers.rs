@@ -108,11 +108,12 @@ fn diverged(point: u32, seed: u32) -> Diverged {
 #[test]
 fn learners_that_diverged_count_as_failed() {
     let (mut names, mut rows) = known();
-    rows.retain(|row| !(row.arm == 0 && row.point == 12 && row.seed == 5 && row.trials > 25));
-    rows.retain(|row| !(row.arm == 0 && row.point == 3 && row.trials > 50));
+    rows.retain(|row| !(row.arm == "hierarchical" && row.point == 12 && row.seed == 5 && row.trials > 25));
+    rows.retain(|row| !(row.arm == "hierarchical" && row.point == 3 && row.trials > 50));
     names.variants.push("moved".into());
-    let last = |row: &&EvaluationRow| (row.arm, row.point, row.trials) == (0, 12, 300);
-    let moved: Vec<EvaluationRow> = rows.iter().filter(last).map(|row| EvaluationRow { variant: 1, ..*row }).collect();
+    let last = |row: &&EvaluationRow| (row.arm.as_str(), row.point, row.trials) == ("hierarchical", 12, 300);
+    let moved: Vec<EvaluationRow> =
+        rows.iter().filter(last).map(|row| EvaluationRow { variant: "moved".to_owned(), ..row.clone() }).collect();
     rows.extend(moved);
     let mut failures = vec![diverged(12, 5)];
     failures.extend((0..SEEDS).map(|seed| diverged(3, seed)));

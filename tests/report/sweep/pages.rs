@@ -5,15 +5,15 @@ use crate::{OFFICE, close, scratch};
 use skilltree::report::sweep::{Swept, effect, levels};
 use skilltree::report::{text, write};
 use skilltree::run_folder::sweep::{Axis, AxisValue, Design, FILE, Scale, write_sweep};
-use skilltree::run_folder::tables::write_evaluations;
+use skilltree::run_folder::tables::write_table;
 use skilltree::run_folder::{Provenance, RunFolder, Sweep};
 use std::fs;
 
 #[test]
 fn the_page_and_the_terminal_say_what_was_found() {
     let dir = scratch("report-sweep");
-    let (names, rows) = known();
-    folder(&dir, &thresholds(), &names, &rows, SEEDS);
+    let (_, rows) = known();
+    folder(&dir, &thresholds(), &rows, SEEDS);
     let written = write(&dir).unwrap();
     let files: Vec<_> = written.iter().map(|path| path.strip_prefix(&dir).unwrap().to_str().unwrap()).collect();
     for name in [
@@ -68,7 +68,7 @@ fn further_axes_are_margins_and_slices() {
         Some((peak(cell / ROWS, cell % ROWS, seed).saturating_sub(8 * hard), 40))
     });
     let sweep = grid(axes);
-    folder(&dir, &sweep, &names, &rows, 8);
+    folder(&dir, &sweep, &rows, 8);
     let written = write(&dir).unwrap();
     let maps = |part: &str| written.iter().filter(|path| path.display().to_string().contains(part)).count();
     assert_eq!((maps("-slice-"), maps("applicable-dock-world."), maps("learning-rate-world.")), (4, 2, 2));
@@ -115,7 +115,7 @@ fn random_points_are_put_into_classes() {
     let best = swept.surfaces[0].best().number as usize;
     assert!((values[best].0.log10() + 2.0).abs() < 0.11, "{}", values[best].0);
     let dir = scratch("report-sweep-random");
-    folder(&dir, &sweep, &names, &rows, 12);
+    folder(&dir, &sweep, &rows, 12);
     write(&dir).unwrap();
     let svg = fs::read_to_string(dir.join("figures/sweep-hierarchical-learning-rate-learning-lambda.svg")).unwrap();
     // A rim and a fill for each point.
@@ -125,14 +125,14 @@ fn random_points_are_put_into_classes() {
 
 #[test]
 fn failures_are_read_from_the_run() {
-    let (names, mut rows) = known();
-    rows.retain(|row| !(row.arm == 0 && row.point == 12 && row.seed == 5 && row.trials > 25));
+    let (_, mut rows) = known();
+    rows.retain(|row| !(row.arm == "hierarchical" && row.point == 12 && row.seed == 5 && row.trials > 25));
     let dir = scratch("report-sweep-failures");
     let failures =
         r#"[{"arm":"hierarchical","point":12,"seed":5,"skill":"recharge","trial":31,"what":"a weight is NaN"}]"#;
     let provenance = Provenance { seeds: (0..SEEDS).collect(), ..Provenance::default() };
     let files = [
-        ("evaluations.parquet".to_owned(), write_evaluations(&rows, &names).unwrap()),
+        ("evaluations.parquet".to_owned(), write_table(&rows).unwrap()),
         ("failures.json".to_owned(), failures.as_bytes().to_vec()),
         (FILE.to_owned(), write_sweep(&thresholds()).unwrap()),
     ];
@@ -144,10 +144,10 @@ fn failures_are_read_from_the_run() {
 
 #[test]
 fn points_that_lack_seeds_are_left_out_and_named() {
-    let (names, mut rows) = known();
-    rows.retain(|row| !(row.arm == 0 && row.point == 12 && row.seed == 5));
+    let (_, mut rows) = known();
+    rows.retain(|row| !(row.arm == "hierarchical" && row.point == 12 && row.seed == 5));
     let dir = scratch("report-sweep-lacking");
-    folder(&dir, &thresholds(), &names, &rows, SEEDS);
+    folder(&dir, &thresholds(), &rows, SEEDS);
     write(&dir).unwrap();
     let page = fs::read_to_string(dir.join("report.html")).unwrap();
     assert!(page.contains("left out: hierarchical, point 12 (23 seeds have tests)"));
@@ -162,10 +162,9 @@ fn a_large_sweep_has_a_small_page() {
     let values = |count: u32| (0..count).map(|i| 0.1 * f64::from(i + 1)).collect::<Vec<_>>();
     let axes = [("a", 5), ("b", 5), ("c", 2), ("d", 2)];
     let sweep = grid(axes.iter().map(|&(key, count)| axis(key, key, Scale::Linear, &values(count))).collect());
-    let names = names(&["hierarchical"]);
     let rows = rows(1, 100, 100, |_, point, seed| Some((peak(point / 20, point / 4 % 5, seed), 20 + point % 4)));
     assert_eq!(rows.len(), 10_000 * TESTS.len());
-    folder(&dir, &sweep, &names, &rows, 100);
+    folder(&dir, &sweep, &rows, 100);
     write(&dir).unwrap();
     let bytes = fs::metadata(dir.join("report.html")).unwrap().len();
     assert!((200_000..5_000_000).contains(&bytes), "{bytes} bytes");

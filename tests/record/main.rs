@@ -1,128 +1,16 @@
 //! Run folders: what is written comes back, and nothing that is cut, altered or foreign is taken for a result.
 
+mod tables;
+
 use skilltree::run_folder::sensor_readings::{read_places, write_places};
-use skilltree::run_folder::tables::{read_evaluations, read_trials, write_evaluations, write_trials};
 use skilltree::run_folder::weights::{read_weights, write_weights};
 use skilltree::run_folder::{
-    EvaluationRow, FORMAT, FinishedRun, Manifest, Names, NetWeights, PlaceReading, Provenance, RecordError, RunFolder,
-    SkillWeights, State, TrialRow,
+    FORMAT, FinishedRun, Manifest, NetWeights, PlaceReading, Provenance, RecordError, RunFolder, SkillWeights, State,
 };
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::path::Path;
 use tempfile::TempDir;
-
-fn names() -> Names {
-    let words = |list: &[&str]| list.iter().map(|word| word.to_string()).collect();
-    Names {
-        arms: words(&["flat", "tree"]),
-        skills: words(&["dock", "räume"]),
-        variants: words(&["trained", "moved"]),
-        rooms: words(&["A", "B"]),
-    }
-}
-
-fn trials(count: u32) -> Vec<TrialRow> {
-    let row = |i: u32| TrialRow {
-        arm: i * 2 / count,
-        point: i % 7,
-        seed: u32::MAX - i % 5,
-        skill: i * 4 / count % 2,
-        trial: i,
-        actions: i.wrapping_mul(2_654_435_761),
-        steps: i % 255,
-        reward: i as f32 * 0.1 - 3.0,
-        success: i.is_multiple_of(3),
-        collisions: i % 4,
-        taught: i.is_multiple_of(10),
-    };
-    (0..count).map(row).collect()
-}
-
-fn evaluations(count: u32) -> Vec<EvaluationRow> {
-    let row = |i: u32| EvaluationRow {
-        arm: i * 2 / count,
-        point: 0,
-        seed: i % 5,
-        skill: i * 4 / count % 2,
-        trials: i,
-        actions: 3_000_000_000 + i,
-        variant: i.div_ceil(2) % 2,
-        room: i % 2,
-        episodes: 100,
-        successes: i % 101,
-        steps: i * 30,
-        reward: f64::from(i) / 3.0,
-        returned: f64::from(i) / -7.0,
-        collisions: i % 9,
-    };
-    (0..count).map(row).collect()
-}
-
-fn saved(dir: &TempDir, bytes: &[u8]) -> PathBuf {
-    let path = dir.path().join("table.parquet");
-    fs::write(&path, bytes).unwrap();
-    path
-}
-
-#[test]
-fn tables_come_back_and_their_bytes_are_fixed() {
-    let dir = TempDir::new().unwrap();
-    for count in [2, 20_000] {
-        let bytes = write_trials(&trials(count), &names()).unwrap();
-        assert_eq!((&bytes[..4], &bytes[bytes.len() - 4..]), (&b"PAR1"[..], &b"PAR1"[..]));
-        assert_eq!(bytes, write_trials(&trials(count), &names()).unwrap());
-        let (read, rows) = read_trials(&saved(&dir, &bytes)).unwrap();
-        assert_eq!(rows, trials(count));
-        assert_eq!((read.arms, read.rooms), (names().arms, vec![]));
-        let bytes = write_evaluations(&evaluations(count), &names()).unwrap();
-        let (read, rows) = read_evaluations(&saved(&dir, &bytes)).unwrap();
-        assert_eq!(rows, evaluations(count));
-        assert_eq!((read.rooms, read.variants), (names().rooms, names().variants));
-    }
-    let empty = write_trials(&[], &names()).unwrap();
-    assert_eq!(read_trials(&saved(&dir, &empty)).unwrap().1, vec![]);
-}
-
-#[test]
-fn tables_that_are_not_ours_are_refused() {
-    let dir = TempDir::new().unwrap();
-    let bytes = write_evaluations(&evaluations(50), &names()).unwrap();
-    let message = read_trials(&saved(&dir, &bytes)).unwrap_err().to_string();
-    assert!(message.contains("table.parquet") && message.contains("no column `trial`"), "{message}");
-    let mut nameless = trials(3);
-    nameless[1].arm = 2;
-    assert!(matches!(write_trials(&nameless, &names()), Err(RecordError::Invalid { .. })));
-}
-
-/// Every cut and many altered bytes: an error or (for bytes that no value depends on) the same number of rows, never a
-/// panic, nor words about one that was caught. Inside a run folder the manifest's hash catches all of them before this
-/// reader sees the file.
-#[test]
-fn damaged_tables_give_errors_and_never_panic() {
-    static SAID: AtomicBool = AtomicBool::new(false);
-    let usual = std::panic::take_hook();
-    std::panic::set_hook(Box::new(move |info| {
-        SAID.store(true, Ordering::Relaxed);
-        usual(info);
-    }));
-    let dir = TempDir::new().unwrap();
-    let bytes = write_evaluations(&evaluations(40), &names()).unwrap();
-    for length in 0..bytes.len() {
-        assert!(read_evaluations(&saved(&dir, &bytes[..length])).is_err(), "cut to {length}");
-    }
-    for position in 0..bytes.len() {
-        for flip in [0x01, 0x80, 0xff] {
-            let mut altered = bytes.clone();
-            altered[position] ^= flip;
-            if let Ok((_, rows)) = read_evaluations(&saved(&dir, &altered)) {
-                assert_eq!(rows.len(), 40, "byte {position}");
-            }
-        }
-    }
-    assert!(!SAID.load(Ordering::Relaxed), "a panic was announced");
-}
 
 fn skills() -> Vec<SkillWeights> {
     let net = |child: &str, inputs: usize, hidden: usize| NetWeights {
