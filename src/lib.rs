@@ -94,20 +94,51 @@
 //!   skills of a tree may take them as inputs.
 //! - Thresholds are learned on the host, between two skills, from nets and lessons that the device hands over once:
 //!   one implementation serves every backend.
+//!
+//! # From Rust
+//!
+//! What is re-exported here is the public interface: an [`Experiment`] is loaded, a [`Backend`] is opened, the experiment
+//! runs into a folder, and its [`FinishedRun`] and report are read. `examples/train.rs` does so in some twenty lines. The
+//! modules are public for the program, tests and examples alone; their names may change with any version.
+
+#[doc(hidden)]
 pub mod backend;
+#[doc(hidden)]
 pub mod bench;
+#[doc(hidden)]
 pub mod cli;
+#[doc(hidden)]
 pub mod config;
+#[doc(hidden)]
 pub mod env;
+#[doc(hidden)]
+pub mod experiment;
+#[doc(hidden)]
 pub mod kernels;
+#[doc(hidden)]
 pub mod layout;
+#[doc(hidden)]
 pub mod learn;
+#[doc(hidden)]
 pub mod math;
+#[doc(hidden)]
 pub mod policy;
+#[doc(hidden)]
 pub mod qnet;
 pub mod report;
+#[doc(hidden)]
 pub mod run_folder;
+#[doc(hidden)]
 pub mod teacher;
+#[doc(hidden)]
 pub mod toml;
+#[doc(hidden)]
 pub mod train;
+#[doc(hidden)]
 pub mod world;
+
+pub use backend::open::{BackendChoice, BackendOptions, open_backend};
+pub use backend::{Backend, BackendError};
+pub use config::{ConfigError, Overrides};
+pub use experiment::{Experiment, ExperimentError, Progress};
+pub use run_folder::{FinishedRun, RecordError};

@@ -11,7 +11,7 @@ use skilltree::backend::gpu::workgroup_weights::holders;
 use skilltree::backend::gpu::{GpuBackend, GpuOptions};
 use skilltree::backend::parity::{self, Difference, UNWRITTEN};
 use skilltree::backend::{Backend, Cohort, Stop, Test};
-use skilltree::cli::Failure;
+use skilltree::cli::CliError;
 use skilltree::config::{Overrides, load};
 use skilltree::layout::phase::{PHASE_DONE, PHASE_FAILED};
 use skilltree::layout::{Episode, LESSON_HEADER, LearnerState, RECORD_WORDS, Robot};
@@ -481,7 +481,7 @@ fn users_can_ask_for_parity() {
     assert_eq!(output.status.code(), Some(0), "{text}{}", String::from_utf8_lossy(&output.stderr));
     assert!(text.contains("\n  parity: equal, 2 learners, "), "{text}");
     assert!(output.stderr.is_empty());
-    assert_eq!(Failure::Parity { differing: 1, adapters: 1 }.code(), 1);
+    assert_eq!(CliError::Parity { differing: 1, adapters: 1 }.code(), 1);
     let output = give(&["devices", "--learners", "2"]);
     assert_eq!(output.status.code(), Some(2), "--learners is for --parity alone");
 }

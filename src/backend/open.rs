@@ -69,6 +69,14 @@ impl BackendOptions {
     }
 }
 
+/// Opens a backend with default options.
+///
+/// # Errors
+/// Where the backend that is asked for cannot be had.
+pub fn open_backend(choice: BackendChoice) -> Result<Box<dyn Backend>, BackendError> {
+    BackendOptions { choice, ..BackendOptions::default() }.open(&mut |_reason| ())
+}
+
 /// A graphics adapter, opened.
 pub struct OpenAdapter {
     /// Its name.

@@ -263,21 +263,21 @@ impl Benchmark for Decisions {
 
 /// Whole trainings of the hierarchy, tests and all.
 #[derive(Debug)]
-pub struct Training<'a> {
+pub struct WholeLearners<'a> {
     name: &'static str,
     learners: &'a HierarchyLearners,
     on_cpu: u32,
     on_card: u32,
 }
 
-impl<'a> Training<'a> {
+impl<'a> WholeLearners<'a> {
     /// `on_cpu` learners on the CPU, `on_card` on a graphics card; the others would take too long.
     pub fn new(name: &'static str, learners: &'a HierarchyLearners, on_cpu: u32, on_card: u32) -> Self {
         Self { name, learners, on_cpu, on_card }
     }
 }
 
-impl Benchmark for Training<'_> {
+impl Benchmark for WholeLearners<'_> {
     fn name(&self) -> &'static str {
         self.name
     }

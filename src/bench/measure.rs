@@ -2,12 +2,12 @@
 //!
 //! The first round is not counted: it compiles shaders and fills caches. In every round all bytes are compared.
 
-use super::benchmarks::{BenchSizes, Benchmark, Decisions, HierarchyLearners, Measurement, RobotSteps, Training};
+use super::benchmarks::{BenchSizes, Benchmark, Decisions, HierarchyLearners, Measurement, RobotSteps, WholeLearners};
 use super::benchmarks::{Transitions, UpdateRule};
 use super::embedded_configs::{HIERARCHY, ONE_POINT, THRESHOLDS};
 use super::executor::{Executor, ExecutorInfo, ExecutorKind, ExecutorSet, open_executors};
 use super::result::{BenchOrigin, BenchReport, FORMAT, RateRow, TaskReport};
-use super::timing::{Spread, cores, free_cores};
+use super::timing::{Spread, cores};
 use super::{BenchError, compare};
 
 /// Whole learners that a graphics card trains at a time, unless told otherwise.
@@ -49,16 +49,16 @@ pub fn bench(options: BenchOptions, command: &str, note: &mut dyn FnMut(&str)) -
     }
     benchmarks.push(Box::new(Decisions::new(&hierarchy, sizes)));
     if let Some(lean) = &lean {
-        benchmarks.push(Box::new(Training::new("learners", &hierarchy, on_cpu, on_card)));
-        benchmarks.push(Box::new(Training::new("learners-lean", lean, on_cpu, on_card)));
+        benchmarks.push(Box::new(WholeLearners::new("learners", &hierarchy, on_cpu, on_card)));
+        benchmarks.push(Box::new(WholeLearners::new("learners-lean", lean, on_cpu, on_card)));
         if software {
             left_out.push("learners on software adapters: they would take too long".to_owned());
         }
     }
-    let (mut tasks, mut free) = (Vec::new(), Vec::new());
+    let mut tasks = Vec::new();
     for benchmark in &benchmarks {
         note(&format!("{}: {}", benchmark.name(), benchmark.about()));
-        tasks.push(measure(benchmark.as_ref(), &mut executors, options.samples, &mut free)?);
+        tasks.push(measure(benchmark.as_ref(), &mut executors, options.samples)?);
     }
     Ok(BenchReport {
         format: FORMAT,
@@ -66,34 +66,27 @@ pub fn bench(options: BenchOptions, command: &str, note: &mut dyn FnMut(&str)) -
         samples: options.samples,
         executors: executors.into_iter().map(|executor| executor.info).collect(),
         left_out,
-        free_cores: Spread::of(free),
         tasks,
     })
 }
 
-/// Measures one kind of work; adds the cores that were free before each sample to `free`.
+/// Measures one kind of work.
 ///
 /// # Errors
 /// [`BenchError::Differs`] where two executors leave different bytes; else where one fails.
-pub fn measure(
-    benchmark: &dyn Benchmark,
-    executors: &mut [Executor],
-    samples: u32,
-    free: &mut Vec<f64>,
-) -> Result<TaskReport, BenchError> {
+pub fn measure(benchmark: &dyn Benchmark, executors: &mut [Executor], samples: u32) -> Result<TaskReport, BenchError> {
     let mut taken: Vec<Vec<Measurement>> = executors.iter().map(|_| Vec::new()).collect();
     for number in 0..=samples {
-        let idle = free_cores();
         let round = round(benchmark, executors, number)?;
         if number > 0 {
-            free.push(idle);
             for (taken, measured) in taken.iter_mut().zip(round) {
                 taken.extend(measured);
             }
         }
     }
     let infos: Vec<&ExecutorInfo> = executors.iter().map(|executor| &executor.info).collect();
-    let rows = (0..infos.len()).filter_map(|own| row(own, &infos, &taken)).collect();
+    let reference = infos.iter().position(|info| info.kind == ExecutorKind::Reference).map(|number| &taken[number][..]);
+    let rows = infos.iter().zip(&taken).filter_map(|(info, own)| row(info, own, reference)).collect();
     Ok(TaskReport { name: benchmark.name().to_owned(), about: benchmark.about(), rows })
 }
 
@@ -118,28 +111,18 @@ fn round(
     Ok(measured)
 }
 
-/// What the samples of executor number `own` say, beside those of the others.
-fn row(own: usize, infos: &[&ExecutorInfo], taken: &[Vec<Measurement>]) -> Option<RateRow> {
-    let (info, samples) = (infos[own], &taken[own]);
-    let of = |kind: ExecutorKind| {
-        let found = infos.iter().position(|other| other.kind == kind && other.threads == 1)?;
-        (found != own && taken[found].len() == samples.len()).then(|| &taken[found])
-    };
+/// What the samples of an executor say, beside those of the reference if it did the same work.
+fn row(info: &ExecutorInfo, samples: &[Measurement], reference: Option<&[Measurement]>) -> Option<RateRow> {
     let per_second = |sample: &Measurement| sample.units as f64 / sample.elapsed.wall;
     let per_cpu_second = |sample: &Measurement| sample.units as f64 / sample.elapsed.cpu;
     // A graphics card takes no CPU-seconds.
-    let rate =
-        |sample: &Measurement| if info.kind == ExecutorKind::Gpu { per_second(sample) } else { per_cpu_second(sample) };
-    let over = |others: &Vec<Measurement>, rate: &dyn Fn(&Measurement) -> f64| {
-        Spread::of(samples.iter().zip(others).map(|(own, other)| rate(own) / rate(other)))
-    };
-    let one_thread = of(ExecutorKind::Cpu).filter(|_| info.kind == ExecutorKind::Cpu);
+    let own = |sample| if info.kind == ExecutorKind::Gpu { per_second(sample) } else { per_cpu_second(sample) };
+    let pairs = reference.filter(|_| info.kind != ExecutorKind::Reference).unwrap_or_default().iter().zip(samples);
     Some(RateRow {
         executor: info.name.clone(),
         units: samples.first()?.units,
         per_second: Spread::of(samples.iter().map(per_second))?,
         per_cpu_second: Spread::of(samples.iter().map(per_cpu_second))?,
-        over_reference: of(ExecutorKind::Reference).and_then(|reference| over(reference, &rate)),
-        over_one_thread: one_thread.and_then(|one| over(one, &per_second)),
+        over_reference: Spread::of(pairs.map(|(reference, sample)| own(sample) / per_cpu_second(reference))),
     })
 }

@@ -28,8 +28,6 @@ pub struct BenchReport {
     pub executors: Vec<ExecutorInfo>,
     /// Who was left out, or what, and why.
     pub left_out: Vec<String>,
-    /// Cores that were free for this process, by a control loop on all of them before each sample.
-    pub free_cores: Option<Spread>,
     /// The kinds of work.
     pub tasks: Vec<TaskReport>,
 }
@@ -77,8 +75,6 @@ pub struct RateRow {
     pub per_cpu_second: Spread,
     /// Rate per CPU-second over that of the reference, sample by sample; of a graphics card, rate per second.
     pub over_reference: Option<Spread>,
-    /// Of the CPU on several threads: rate per second over that on one.
-    pub over_one_thread: Option<Spread>,
 }
 
 impl BenchOrigin {

@@ -1,6 +1,6 @@
 //! A [`BenchReport`] as people read it.
 
-use super::result::{BenchReport, RateRow, TaskReport};
+use super::result::{BenchReport, TaskReport};
 use std::fmt::Write as _;
 
 /// The whole report.
@@ -11,9 +11,6 @@ pub fn text(report: &BenchReport) -> String {
         let _ = writeln!(out, "  {:<9} {}", executor.name, executor.device);
     }
     let _ = writeln!(out, "{} samples in turn: medians, and quartiles in brackets", report.samples);
-    if let Some(free) = &report.free_cores {
-        let _ = writeln!(out, "cores that were free: {}", free.text(1.0, 2));
-    }
     for task in &report.tasks {
         let _ = write!(out, "\n{}", task_text(task));
     }
@@ -28,25 +25,15 @@ fn task_text(task: &TaskReport) -> String {
     let most = task.rows.iter().map(|row| row.per_second.median.max(row.per_cpu_second.median)).fold(0.0, f64::max);
     let (factor, letter) = if most >= 1.0e5 { (1.0e-6, "M ") } else { (1.0, "") };
     for row in &task.rows {
+        let ratio = row.over_reference.as_ref().map(|ratio| format!(", {:.1} x reference", ratio.median));
         let _ = writeln!(
             out,
             "  {:<9} {:>24} {letter}per CPU-second {:>24} {letter}per second{}",
             row.executor,
             row.per_cpu_second.text(factor, 3),
             row.per_second.text(factor, 3),
-            ratios(row)
+            ratio.unwrap_or_default()
         );
-    }
-    out
-}
-
-fn ratios(row: &RateRow) -> String {
-    let mut out = String::new();
-    if let Some(ratio) = &row.over_reference {
-        let _ = write!(out, ", {:.1} x reference", ratio.median);
-    }
-    if let Some(ratio) = &row.over_one_thread {
-        let _ = write!(out, ", {:.2} x one thread", ratio.median);
     }
     out
 }

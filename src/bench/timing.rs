@@ -2,7 +2,6 @@
 
 use super::BenchError;
 use serde::{Deserialize, Serialize};
-use std::hint::black_box;
 use std::time::Instant;
 
 /// How long something took.
@@ -77,26 +76,6 @@ impl Spread {
 /// Cores that this process may use.
 pub fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
-}
-
-/// How many of all cores are free: the work of a loop that needs nothing but a core, done by one thread on each at once,
-/// over that of one thread in the same time.
-pub fn free_cores() -> f64 {
-    let spin = || {
-        let mut state = black_box(1_u32);
-        for _turn in 0..4_000_000 {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        }
-        black_box(state);
-    };
-    let seconds = |threads: usize| {
-        let begun = Instant::now();
-        std::thread::scope(|scope| (0..threads).for_each(|_thread| drop(scope.spawn(spin))));
-        begun.elapsed().as_secs_f64()
-    };
-    // The least of three: what disturbs one thread says nothing about the cores.
-    let alone = (0..3).map(|_try| seconds(1)).fold(f64::INFINITY, f64::min);
-    (cores() as f64 * alone / seconds(cores())).min(cores() as f64)
 }
 
 #[cfg(test)]

@@ -42,10 +42,10 @@ pub struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    Run(run::Arguments),
-    Report(report::Arguments),
-    Probe(probe::Arguments),
-    Devices(devices::Arguments),
+    Run(run::RunArguments),
+    Report(report::ReportArguments),
+    Probe(probe::ProbeArguments),
+    Devices(devices::DevicesArguments),
     Bench(bench::BenchArguments),
 }
 

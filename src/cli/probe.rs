@@ -26,7 +26,7 @@ use std::path::PathBuf;
     "left, back, right), compass (degrees), blocked, docked.\n\n",
     exit_codes!()
 ))]
-pub(super) struct Arguments {
+pub(super) struct ProbeArguments {
     /// The experiment, for its world and noise.
     config: PathBuf,
     /// Where it starts: inches to the right, inches up, heading in degrees (0 = east, counter-clockwise); or
@@ -59,7 +59,7 @@ enum Noisy {
 
 /// One line of output.
 #[derive(Debug, Serialize)]
-struct Reading {
+struct ProbeReading {
     x: f32,
     y: f32,
     heading: f32,
@@ -72,7 +72,7 @@ struct Reading {
     docked: bool,
 }
 
-pub(super) fn probe(arguments: &Arguments) -> Result<(), CliError> {
+pub(super) fn probe(arguments: &ProbeArguments) -> Result<(), CliError> {
     let plan = load(&arguments.config, &Overrides { set: arguments.set.clone(), ..Overrides::default() })?;
     let pose = pose_of(&arguments.at, plan.world())?;
     let actions = actions_of(&arguments.actions)?;
@@ -100,10 +100,10 @@ pub(super) fn probe(arguments: &Arguments) -> Result<(), CliError> {
     Ok(())
 }
 
-fn reading_of(robot: &Robot, world: &World) -> Reading {
+fn reading_of(robot: &Robot, world: &World) -> ProbeReading {
     let senses = Senses::of(robot);
     let room = world.room_of(Vec2::new(robot.x, robot.y)).map(|room| world.rooms[room].name.clone());
-    Reading {
+    ProbeReading {
         x: robot.x,
         y: robot.y,
         heading: robot.heading,
@@ -117,7 +117,7 @@ fn reading_of(robot: &Robot, world: &World) -> Reading {
     }
 }
 
-fn text_of(action: Option<Action>, reading: &Reading) -> String {
+fn text_of(action: Option<Action>, reading: &ProbeReading) -> String {
     let list = |values: &[u32]| values.iter().map(u32::to_string).collect::<Vec<_>>().join(" ");
     let bits = |values: &[u8]| values.iter().map(|bit| if *bit == 1 { '*' } else { '.' }).collect::<String>();
     let name = action.map_or("start", Action::name);

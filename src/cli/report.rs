@@ -13,13 +13,13 @@ use std::path::PathBuf;
     "folder always gives the same bytes. `skilltree run` does this at its end by itself.\n\n",
     exit_codes!()
 ))]
-pub(super) struct Arguments {
+pub(super) struct ReportArguments {
     /// Run folders, as `skilltree run` leaves them.
     #[arg(required = true, value_name = "DIR")]
     folders: Vec<PathBuf>,
 }
 
-pub(super) fn report(arguments: &Arguments) -> Result<(), CliError> {
+pub(super) fn report(arguments: &ReportArguments) -> Result<(), CliError> {
     for folder in &arguments.folders {
         let written = report::write(folder)?;
         print(&report::text(folder)?)?;

@@ -5,17 +5,16 @@ use super::console::{print, tell};
 use super::progress::RunProgress;
 use super::signals::Signals;
 use super::{CliError, exit_codes, preview};
-use crate::config::plan::Plan;
-use crate::config::{Overrides, load};
+use crate::config::Overrides;
+use crate::experiment::Experiment;
 use crate::report;
 use crate::run_folder::file_system::{Disk, FileSystem};
-use crate::run_folder::{Provenance, RunFolder, State, folder, tables};
+use crate::run_folder::{State, folder, tables};
 use crate::train::batch_group::groups;
-use crate::train::run::{Options, run as run_experiment};
-use std::collections::BTreeMap;
+use crate::train::run::Options;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant, SystemTime};
+use std::time::{Duration, Instant};
 
 /// Trains, tests, records and reports an experiment. The same command again continues where an interrupted
 /// run stopped, or says that the run is complete.
@@ -33,7 +32,7 @@ use std::time::{Duration, Instant, SystemTime};
     "last checkpoint.\n\n",
     exit_codes!()
 ))]
-pub(super) struct Arguments {
+pub(super) struct RunArguments {
     /// The experiment: a TOML file.
     config: PathBuf,
     /// Seeds, instead of the config's: `0..7` (7 left out), `5`, `1,2,5..9`.
@@ -65,29 +64,28 @@ pub(super) struct Arguments {
     out: Option<PathBuf>,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<(), CliError> {
+pub(super) fn run(arguments: &RunArguments) -> Result<(), CliError> {
     let overrides = Overrides {
         set: arguments.set.clone(),
         seeds: arguments.seeds.clone(),
         arms: arguments.arm.clone(),
         points: arguments.point.clone(),
     };
-    let plan = load(&arguments.config, &overrides)?;
+    let experiment = Experiment::load(&arguments.config, &overrides)?;
+    let plan = experiment.plan();
     let out = arguments.out.clone().unwrap_or_else(|| Path::new("runs").join(&plan.name));
-    let worlds: Vec<(&str, &str)> = plan.worlds.iter().map(|world| (&*world.file, &*world.text)).collect();
-    let open = || RunFolder::open(&out, &plan.resolved, &worlds);
     // A folder that is there is looked at first. A new one is made last: what is refused leaves nothing behind.
-    let there = if arguments.dry_run || is_new(&out) { None } else { Some(open()?) };
+    let there = if arguments.dry_run || is_new(&out) { None } else { Some(experiment.open_folder(&out)?) };
     if there.as_ref().is_some_and(|folder| folder.state() == State::Complete) {
         drop(there);
         tell(&format!("{} is complete: nothing is left to run", out.display()));
         return conclude(&out);
     }
     let mut backend = arguments.backend.open()?;
-    let groups = groups(&plan)?;
+    let groups = groups(plan)?;
     let options =
         Options { cohort: arguments.cohort.map(|cohort| cohort as usize), checkpoint: Some(arguments.checkpoint) };
-    let forecast = preview::show(&plan, &groups, backend.as_mut(), options)?;
+    let forecast = preview::show(plan, &groups, backend.as_mut(), options)?;
     tell(&format!("folder:   {}", out.display()));
     if arguments.dry_run {
         tell("nothing was run or written (--dry-run)");
@@ -95,26 +93,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CliError> {
     }
     let run_folder = match there {
         Some(folder) => folder,
-        None => open()?,
+        None => experiment.open_folder(&out)?,
     };
     if run_folder.state() == State::Partial {
         tell("          continued: what is finished there is kept");
     }
     let started = Instant::now();
-    let trials = trials(&plan);
     let signals = Signals::listen().map_err(CliError::Signals)?;
-    let mut progress = RunProgress::new(forecast.learners, trials, signals);
-    let provenance = Provenance {
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        commit: option_env!("SKILLTREE_COMMIT").map(str::to_owned),
-        backend: backend.kind().to_owned(),
-        adapter: backend.adapter(),
-        seeds: plan.seeds.clone(),
-        started: Some(humantime::format_rfc3339_seconds(SystemTime::now()).to_string()),
-        finished: None,
-        notes: BTreeMap::from([("executed by".to_owned(), backend.describe())]),
-    };
-    let outcome = run_experiment(&plan, &groups, run_folder, backend.as_mut(), options, provenance, &mut progress);
+    let mut progress = RunProgress::new(forecast.learners, experiment.trials(), signals);
+    let outcome = experiment.train(&groups, run_folder, backend.as_mut(), options, &mut progress);
     progress.finish();
     // From here on a signal ends the program: a report is soon made again.
     drop(progress);
@@ -138,12 +125,6 @@ fn is_new(out: &Path) -> bool {
         Ok(names) => names.is_empty(),
         Err(error) => error.kind() == ErrorKind::NotFound,
     }
-}
-
-/// Trials of all learners of a plan together.
-fn trials(plan: &Plan) -> u64 {
-    let trials: u64 = plan.arms.iter().flat_map(|arm| &arm.skills).map(|skill| u64::from(skill.trials)).sum();
-    trials * plan.seeds.len() as u64
 }
 
 /// Makes the report of a complete run and says where everything is.

@@ -15,7 +15,7 @@ mod within;
 
 use faulty::{Fault, Faulty, Plan};
 use memory::Memory;
-use skilltree::cli::Failure;
+use skilltree::cli::CliError;
 use skilltree::report;
 use skilltree::run_folder::file_system::Disk;
 use skilltree::run_folder::{Manifest, RecordError};
@@ -96,7 +96,7 @@ fn nothing_half_written(files: &Files, what: &str) {
 }
 
 /// What the user sees, and the exit code. The path is the call's own, or one in the run folder.
-fn clean(failure: &Failure, call: &(&str, PathBuf), what: &str) {
+fn clean(failure: &CliError, call: &(&str, PathBuf), what: &str) {
     let message = failure.to_string();
     assert_eq!(failure.code(), 1, "{what}: {message}");
     let path = message.split_once(": ").map(|(path, _)| Path::new(path));
@@ -106,8 +106,8 @@ fn clean(failure: &Failure, call: &(&str, PathBuf), what: &str) {
 }
 
 /// The error says whether the file is there.
-fn told_apart(failure: &Failure, call: &(&str, PathBuf), before: &Files, after: &Files, what: &str) {
-    let Failure::Record(error) = failure else { return };
+fn told_apart(failure: &CliError, call: &(&str, PathBuf), before: &Files, after: &Files, what: &str) {
+    let CliError::Record(error) = failure else { return };
     match error {
         RecordError::DurabilityUnknown { path, .. } => {
             assert_eq!((call.0, &call.1), ("sync folder", path), "{what}");
@@ -144,7 +144,7 @@ fn disturbed(plan: Plan) {
         }
         Err(error) => {
             assert!(!harmless && (plan.lasting || !tidying), "{what}: {error}");
-            let failure = Failure::from(error);
+            let failure = CliError::from(error);
             clean(&failure, call, &what);
             if !plan.lasting {
                 told_apart(&failure, call, &Files::new(), &left, &what);
@@ -216,7 +216,7 @@ fn a_stopped_run_survives_a_fault_of_every_call() {
         left.remove(&checkpoint);
         nothing_half_written(&left, &what);
         if let Err(error) = outcome {
-            clean(&Failure::from(error), asked, &what);
+            clean(&CliError::from(error), asked, &what);
         }
         stopped_and_gone_on(&disk.repaired()).unwrap_or_else(|error| panic!("{what}: not repaired: {error}"));
         assert!(visible(disk.memory.files()) == undisturbed().files, "{what}: other bytes after the repair");
@@ -251,8 +251,8 @@ fn a_run_survives_a_power_cut_at_every_call() {
 }
 
 /// A report on a disk; its folder holds a complete run.
-fn reported(disk: Arc<dyn Disk>) -> Result<(), Failure> {
-    report::write_on(disk, &folder()).map(drop).map_err(Failure::Report)
+fn reported(disk: Arc<dyn Disk>) -> Result<(), CliError> {
+    report::write_on(disk, &folder()).map(drop).map_err(CliError::Report)
 }
 
 #[test]

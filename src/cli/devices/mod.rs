@@ -19,7 +19,7 @@ use std::path::PathBuf;
     "CPU, and names the first word that differs. Any difference is exit code 1.\n\n",
     exit_codes!()
 ))]
-pub(super) struct Arguments {
+pub(super) struct DevicesArguments {
     /// One JSON object for all adapters.
     #[arg(long)]
     json: bool,
@@ -65,7 +65,7 @@ struct AdapterReport {
 ///
 /// # Errors
 /// Where an adapter is to leave the CPU's bytes and does not. A machine without adapters is not in error.
-pub(super) fn devices(arguments: &Arguments) -> Result<(), CliError> {
+pub(super) fn devices(arguments: &DevicesArguments) -> Result<(), CliError> {
     if let Some(config) = &arguments.parity {
         return parity::check(config, arguments.learners as usize);
     }
