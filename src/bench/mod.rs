@@ -25,7 +25,7 @@ pub mod workload;
 use crate::backend::BackendError;
 use crate::config::ConfigError;
 use crate::train::batch_group::SetupError;
-use crate::train::train_loop::Halt;
+use crate::train::callbacks::Interrupted;
 use std::path::{Path, PathBuf};
 
 /// Why a benchmark cannot be run, or its figures would mean nothing.
@@ -72,7 +72,7 @@ pub enum BenchError {
     Backend(#[from] BackendError),
     /// A cohort has not come to its end.
     #[error(transparent)]
-    Halt(#[from] Halt),
+    Interrupted(#[from] Interrupted),
 }
 
 /// Compares two executors' words of the same work.

@@ -15,13 +15,13 @@ use crate::math::functions::{exponential, flush, reciprocal, reciprocal_sqrt, sq
 use crate::policy::features::{GROUP_BUMPERS, GROUP_LIGHT, GROUP_SONAR};
 use crate::qnet::backward::{CLOCK_SECOND, OPTIMISER_ADAM_ROWS, OPTIMISER_SGD};
 use crate::qnet::forward::{bits_of, lanes_of, net_of};
-use crate::train::batch_group::{Group, groups};
+use crate::train::batch_group::{BatchGroup, groups};
 use bytemuck::Zeroable;
 
 /// Learners that learn from their taught lessons, pass after pass.
 #[derive(Debug)]
 pub struct Drill {
-    group: Group,
+    group: BatchGroup,
     cohort: Cohort,
 }
 

@@ -15,7 +15,7 @@ use crate::math::rng::BATCH;
 use crate::qnet::backward::{OPTIMISER_ADAM_ROWS, OPTIMISER_SGD};
 use crate::qnet::forward::lanes_of;
 use crate::train::batch::train;
-use crate::train::batch_group::{Group, LearnerId, groups};
+use crate::train::batch_group::{BatchGroup, LearnerId, groups};
 use glam::Vec2;
 
 /// A piece of work done once.
@@ -226,7 +226,7 @@ impl Task for Replay {
 #[derive(Debug)]
 pub struct Hierarchy {
     plan: Plan,
-    group: Group,
+    group: BatchGroup,
 }
 
 impl Hierarchy {
