@@ -12,8 +12,8 @@ use skilltree::layout::{BASE_WORDS, LESSON_HEADER, Robot};
 use skilltree::learn::lesson::ENDED;
 use skilltree::teacher::demonstrations::Demonstration;
 use skilltree::teacher::value_iteration::{Planner, Terms};
-use skilltree::train::batch_group::{Group, groups};
-use skilltree::train::observation::{SILENT, Senses, floor_only, robot_at};
+use skilltree::train::batch_group::{BatchGroup, groups};
+use skilltree::train::observation::{Observation, SILENT, floor_only, robot_at};
 use skilltree::world::{Pose, World, parse};
 use std::collections::VecDeque;
 use std::fmt::Write;
@@ -277,18 +277,18 @@ const DOOR: &str = r#"
     trials = 10
 "#;
 
-fn only(plan: &Plan) -> Group {
+fn only(plan: &Plan) -> BatchGroup {
     let mut groups = groups(plan).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(groups.len(), 1);
     groups.remove(0)
 }
 
 /// The planner's own tests of the only skill.
-fn bounds(group: &Group) -> &[Demonstration] {
+fn bounds(group: &BatchGroup) -> &[Demonstration] {
     group.bounds[0].as_deref().expect("the first group has the tests")
 }
 
-fn success(group: &Group) -> f64 {
+fn success(group: &BatchGroup) -> f64 {
     let tests = bounds(group);
     assert_eq!(tests.len(), 1000);
     tests.iter().filter(|test| test.achieved()).count() as f64 / 1000.0
@@ -316,7 +316,7 @@ fn check_lesson(lesson: &[u32], ends: u32, pay: [f32; 3]) {
     assert!(lesson[LESSON_HEADER + (steps + 1) * BASE_WORDS..].iter().all(|word| *word == 0));
 }
 
-fn check_bank(group: &Group, ends: u32, pay: [f32; 3]) {
+fn check_bank(group: &BatchGroup, ends: u32, pay: [f32; 3]) {
     let skill = &group.shared.skills[0];
     assert_eq!((skill.bank_offset, skill.bank_lessons), (0, 100));
     let lessons: Vec<&[u32]> = group.shared.bank.chunks(skill.lesson_stride as usize).collect();
@@ -350,7 +350,7 @@ fn the_planner_passes_doors_in_the_office_too() {
 }
 
 /// Number of the room that holds a pose.
-fn plan_room(group: &Group, pose: Pose) -> u32 {
+fn plan_room(group: &BatchGroup, pose: Pose) -> u32 {
     let plan = &group.shared.floor.plan;
     let inside = |area: &&skilltree::layout::Area| {
         area.x0 <= pose.x && pose.x < area.x1 && area.y0 <= pose.y && pose.y < area.y1
@@ -360,7 +360,7 @@ fn plan_room(group: &Group, pose: Pose) -> u32 {
 }
 
 /// Events that the readings after an action tell of: the nearest one 30 to 150 degrees to a side is 15 to 30 inches.
-fn following_wall(senses: &Senses, action: u32, events: u32) -> u32 {
+fn following_wall(senses: &Observation, action: u32, events: u32) -> u32 {
     let near = |rays: std::ops::RangeInclusive<usize>| {
         let nearest = senses.sonar[rays].iter().min().copied().unwrap_or(0);
         action == FORWARD && events & (COLLISION | DOCKED) == 0 && (15..=30).contains(&nearest)
@@ -381,7 +381,7 @@ fn lessons_without_noise_can_be_driven_again() {
             let sense = |step: usize| {
                 let mut record = [0; BASE_WORDS];
                 record.copy_from_slice(&test.lesson[LESSON_HEADER + step * BASE_WORDS..][..BASE_WORDS]);
-                Senses::of(&Robot { record, ..bytemuck::Zeroable::zeroed() })
+                Observation::of(&Robot { record, ..bytemuck::Zeroable::zeroed() })
             };
             let mut pose = test.start;
             let room = |pose: Pose| plan_room(&group, pose);
@@ -406,7 +406,7 @@ fn lessons_without_noise_can_be_driven_again() {
         assert!(hits < 100, "{hits} collisions in 200 lessons");
         CpuBackend::new(2, None).expect("threads").step(&group.shared, &mut robots, 1).expect("the CPU steps");
         for (then, robot) in sensed.iter().zip(&robots) {
-            let now = Senses::of(robot);
+            let now = Observation::of(robot);
             assert_eq!((then.sonar, then.light, then.compass), (now.sonar, now.light, robot.heading));
         }
     }

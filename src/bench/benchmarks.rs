@@ -9,7 +9,7 @@ use super::timing::{Elapsed, timed};
 use crate::backend::{Cohort, Test};
 use crate::config::plan::{Optimiser, Plan};
 use crate::train::batch::train;
-use crate::train::batch_group::{Group, LearnerId, groups};
+use crate::train::batch_group::{BatchGroup, LearnerId, groups};
 
 /// A piece of work done once.
 #[derive(Debug)]
@@ -198,7 +198,7 @@ impl Benchmark for Transitions {
 #[derive(Debug)]
 pub struct HierarchyLearners {
     plan: Plan,
-    group: Group,
+    group: BatchGroup,
 }
 
 impl HierarchyLearners {

@@ -7,7 +7,7 @@ use super::sweep::Swept;
 use super::training::{self, Training};
 use crate::run_folder::failures::failures_of;
 use crate::run_folder::sweep::{self, read_sweep};
-use crate::run_folder::{Failure, FinishedRun, RecordError, tables};
+use crate::run_folder::{Divergence, FinishedRun, RecordError, tables};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -64,6 +64,6 @@ fn table<T: Default>(
 }
 
 fn diverged(run: &FinishedRun) -> Result<Vec<Diverged>, RecordError> {
-    let told = |Failure { arm, point, seed, skill, trial, .. }| Diverged { arm, point, seed, skill, trial };
+    let told = |Divergence { arm, point, seed, skill, trial, .. }| Diverged { arm, point, seed, skill, trial };
     Ok(failures_of(run)?.into_iter().map(told).collect())
 }

@@ -1,4 +1,4 @@
-//! What made a learner fail: the transition and the weight at which a number stopped being finite.
+//! What made a learner diverge: the transition and the weight at which a number stopped being finite.
 //!
 //! Kernels only freeze such a learner where it is. Its lessons and nets are as they were then, so the host finds the
 //! transition by the state and computes its Q-values and its target once more, with the kernels' twins.
@@ -11,10 +11,10 @@ use crate::env::workgroup::{Nets, Workgroup};
 use crate::layout::{LANES, LESSON_HEADER_WORDS, PHASE_FAILED, SkillShape};
 use crate::learn::lesson::choice_child;
 use crate::math::functions::is_number;
-use crate::run_folder::failures::{Failure, Number, Transition, Weight};
+use crate::run_folder::failures::{Divergence, Number, Transition, Weight};
 
-/// What a learner of the cohort has failed of, if it has.
-pub fn failure_of(plan: &Plan, cohort: &Cohort, index: usize, id: LearnerId) -> Option<Failure> {
+/// Where a learner of the cohort has diverged, if it has.
+pub fn divergence_of(plan: &Plan, cohort: &Cohort, index: usize, id: LearnerId) -> Option<Divergence> {
     let state = cohort.states[index];
     if state.phase != PHASE_FAILED {
         return None;
@@ -28,7 +28,7 @@ pub fn failure_of(plan: &Plan, cohort: &Cohort, index: usize, id: LearnerId) -> 
     } else {
         "a weight is not finite after the last replayed step"
     };
-    Some(Failure {
+    Some(Divergence {
         arm: arm.name.clone(),
         point: arm.point,
         seed: id.seed,

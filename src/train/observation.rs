@@ -1,4 +1,4 @@
-//! A record's first words as a person reads them.
+//! What a robot senses, as a person reads it.
 
 use crate::backend::{Backend, BackendError};
 use crate::config::plan::{Noise, NoiseKind};
@@ -13,7 +13,7 @@ use bytemuck::Zeroable;
 
 /// One reading of all sensors.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Senses {
+pub struct SensorValues {
     /// Inches; index 0 straight ahead, then counter-clockwise every 15 degrees.
     pub sonar: [u32; RAYS],
     /// 0 or 1, in the same order.
@@ -24,7 +24,7 @@ pub struct Senses {
     pub compass: f32,
 }
 
-impl Senses {
+impl SensorValues {
     /// What the robot sensed last.
     pub fn of(robot: &Robot) -> Self {
         Self {
@@ -76,14 +76,14 @@ pub fn places(world: &World, backend: &mut dyn Backend) -> Result<Vec<PlaceReadi
     }
     backend.step(&shared, &mut robots, 1)?;
     let reading = |((place, pose), robot): (&(String, Pose), &Robot)| {
-        let senses = Senses::of(robot);
+        let observed = SensorValues::of(robot);
         PlaceReading {
             place: place.clone(),
             x: pose.x,
             y: pose.y,
             heading: pose.heading,
-            sonar: senses.sonar,
-            light: senses.light,
+            sonar: observed.sonar,
+            light: observed.light,
         }
     };
     Ok(world.places.iter().zip(&robots).map(reading).collect())

@@ -1,6 +1,6 @@
 //! A small piece of work that touches every kernel: done on two backends, it must leave the same bytes.
 
-use super::batch_group::{Group, LearnerId, SetupError, groups};
+use super::batch_group::{BatchGroup, LearnerId, SetupError, groups};
 use super::observation::{floor_only, robot_at};
 use crate::backend::UNWRITTEN;
 use crate::backend::parity::{self, Difference};
@@ -88,7 +88,7 @@ impl Work {
         let mut ids: Vec<LearnerId> = groups.iter().flat_map(|group| group.learners(&plan)).collect();
         ids.sort_by_key(|id| (id.seed, id.arm));
         ids.truncate(learners);
-        let cohort = |group: &Group| {
+        let cohort = |group: &BatchGroup| {
             let own: Vec<LearnerId> = ids.iter().copied().filter(|id| group.arms.contains(&id.arm)).collect();
             let mut cohort = group.cohort(&plan, &own);
             cohort.lessons.fill(UNWRITTEN);

@@ -12,6 +12,7 @@ use crate::env::workgroup::{Nets, Workgroup};
 use crate::layout::{HyperParams, LearnerState, TERMINATED};
 use crate::learn::lesson::{LESSON_END, LESSON_STEPS};
 use bytemuck::Zeroable;
+use serde::{Deserialize, Serialize};
 
 /// Newton steps of a fit; it has settled long before.
 const ROUNDS: u32 = 50;
@@ -21,7 +22,7 @@ const SMALLEST: f64 = 1.0e-6;
 const RIDGE: f64 = 1.0e-3;
 
 /// Log odds of success, as a line over the best Q-value.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Fit {
     /// At value 0.
     pub offset: f64,

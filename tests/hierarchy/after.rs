@@ -13,10 +13,10 @@ use skilltree::layout::{Episode, LESSON_HEADER, RECORD_WORDS, VALUE_WORD};
 use skilltree::learn::lesson::ENDED;
 use skilltree::run_folder::weights::read_weights;
 use skilltree::run_folder::{Provenance, RunFolder, Sums};
-use skilltree::train::batch::{train, train_stem};
-use skilltree::train::batch_group::Group;
+use skilltree::train::batch::{pretrain, train};
+use skilltree::train::batch_group::BatchGroup;
 use skilltree::train::result::LearnerResult;
-use skilltree::train::run::{Observer, Options, run};
+use skilltree::train::run::{Options, run};
 use skilltree::train::trajectories::trajectories;
 use tempfile::TempDir;
 
@@ -25,10 +25,10 @@ fn number(plan: &Plan, name: &str) -> usize {
 }
 
 /// All that the plan's only arm leaves, and its learners' memory.
-fn trained(plan: &Plan, group: &Group) -> (Vec<LearnerResult>, Cohort) {
+fn trained(plan: &Plan, group: &BatchGroup) -> (Vec<LearnerResult>, Cohort) {
     let mut backend = CpuBackend::new(2, None).expect("threads");
     let ids = group.learners(plan);
-    let stems = train_stem(plan, group, &ids, None, &mut backend, &mut ()).expect("the CPU does not fail");
+    let stems = pretrain(plan, group, &ids, None, &mut backend, &mut ()).expect("the CPU does not fail");
     let stem_of = |id| stems.iter().find(|stem| stem.id == id);
     let results = train(plan, group, &ids, &stem_of, None, &mut backend, &mut ()).expect("the CPU does not fail");
     let memory = backend.memory().expect("memory").clone();
@@ -87,13 +87,6 @@ fn direct(seen: &[(f64, bool)], probability: f64) -> f64 {
         return 1.0;
     }
     (((probability / (1.0 - probability)).ln() - best_offset(slope)) / slope).clamp(-1.0, 1.0)
-}
-
-struct Nobody;
-
-impl Observer for Nobody {
-    fn trials(&mut self, _finished: u64) {}
-    fn committed(&mut self, _finished: usize) {}
 }
 
 #[test]
@@ -156,8 +149,7 @@ fn learned_thresholds_are_those_of_a_direct_fit() {
     let dir = parent.path().join("run");
     let worlds: Vec<(&str, &str)> = plan.worlds.iter().map(|w| (w.file.as_str(), w.text.as_str())).collect();
     let folder = RunFolder::open(&dir, &plan.resolved, &worlds).expect("a run folder");
-    run(&plan, &[group], folder, &mut backend, Options::default(), Provenance::default(), &mut Nobody)
-        .expect("it runs");
+    run(&plan, &[group], folder, &mut backend, Options::default(), Provenance::default(), &mut ()).expect("it runs");
     for (seed, result) in results.iter().enumerate() {
         let path = dir.join(format!("skills/base-{seed}.safetensors"));
         let (nets, metadata) = read_weights(&std::fs::read(&path).expect("weights"), &path).expect("weights");

@@ -11,7 +11,7 @@ use skilltree::layout::phase::{PHASE_DONE, PHASE_REPLAY, PHASE_TEACH};
 use skilltree::layout::{Dispatch, Episode, LANES, LESSON_HEADER, RECORD_WORDS, ROW_WORDS, VALUE_WORD};
 use skilltree::learn::lesson::ENDED;
 use skilltree::policy::persistence::IDLE;
-use skilltree::train::batch_group::{Group, groups};
+use skilltree::train::batch_group::{BatchGroup, groups};
 use std::collections::BTreeMap;
 
 /// Home is docked to the charger; from the other room the way there leads through the door.
@@ -102,7 +102,7 @@ pub(crate) fn home(arms: &str, set: &[&str]) -> Plan {
 /// The point beyond every skill.
 pub(crate) const DONE: Stop = Stop { skill: u32::MAX, trial: u32::MAX };
 
-pub(crate) fn only_group(plan: &Plan) -> Group {
+pub(crate) fn only_group(plan: &Plan) -> BatchGroup {
     let mut groups = groups(plan).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(groups.len(), 1);
     groups.remove(0)
@@ -113,7 +113,7 @@ pub(crate) fn reach(backend: &mut CpuBackend, stop: Stop) {
 }
 
 /// A cohort that has learned everything, and its tests of each skill before the first trial and after the last.
-fn learned(plan: &Plan, group: &Group) -> (Cohort, Vec<[Vec<Episode>; 2]>) {
+fn learned(plan: &Plan, group: &BatchGroup) -> (Cohort, Vec<[Vec<Episode>; 2]>) {
     let mut backend = CpuBackend::new(2, None).expect("threads");
     backend.load(group.cohort(plan, &group.learners(plan))).expect("memory");
     let mut tests = Vec::new();
