@@ -105,6 +105,7 @@ pub mod learn;
 pub mod math;
 pub mod policy;
 pub mod qnet;
+#[cfg(feature = "report")]
 pub mod report;
 pub mod run_folder;
 pub mod teacher;

@@ -4,10 +4,9 @@ use super::backend::BackendArguments;
 use super::output::{print, tell};
 use super::progress::RunProgress;
 use super::signals::Signals;
-use super::{Failure, exit_codes, plan};
+use super::{Failure, exit_codes, plan, report};
 use crate::config::plan::Plan;
 use crate::config::{Overrides, load};
-use crate::report;
 use crate::run_folder::file_system::{Disk, FileSystem};
 use crate::run_folder::{Provenance, RunFolder, State, folder, tables};
 use crate::train::batch_group::groups;
@@ -148,14 +147,14 @@ fn trials(plan: &Plan) -> u64 {
 
 /// Makes the report of a complete run and says where everything is.
 fn conclude(out: &Path) -> Result<(), Failure> {
-    report::write(out)?;
-    print(&report::text(out)?)?;
-    let lines = [
+    let page = report::conclude(out)?;
+    let mut lines = vec![
         ("tables:  ", tables::TRIALS),
         ("         ", tables::EVALUATIONS),
         ("nets:    ", "skills"),
         ("config:  ", folder::CONFIG),
-        ("report:  ", report::PAGE),
     ];
-    print(&lines.map(|(label, name)| format!("{label}{}\n", out.join(name).display())).concat())
+    lines.extend(page.map(|page| ("report:  ", page)));
+    let lines = lines.into_iter().map(|(label, name)| format!("{label}{}\n", out.join(name).display()));
+    print(&lines.collect::<String>())
 }
