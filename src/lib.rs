@@ -125,6 +125,7 @@ pub mod math;
 pub mod policy;
 #[doc(hidden)]
 pub mod qnet;
+#[cfg(feature = "report")]
 pub mod report;
 #[doc(hidden)]
 pub mod run_folder;

@@ -4,10 +4,9 @@ use super::backend::BackendArguments;
 use super::console::{print, tell};
 use super::progress::RunProgress;
 use super::signals::Signals;
-use super::{CliError, exit_codes, preview};
+use super::{CliError, exit_codes, preview, report};
 use crate::config::Overrides;
 use crate::experiment::Experiment;
-use crate::report;
 use crate::run_folder::file_system::{Disk, FileSystem};
 use crate::run_folder::{State, folder, tables};
 use crate::train::batch_group::groups;
@@ -129,14 +128,14 @@ fn is_new(out: &Path) -> bool {
 
 /// Makes the report of a complete run and says where everything is.
 fn conclude(out: &Path) -> Result<(), CliError> {
-    report::write(out)?;
-    print(&report::text(out)?)?;
-    let lines = [
+    let page = report::conclude(out)?;
+    let mut lines = vec![
         ("tables:  ", tables::TRIALS),
         ("         ", tables::EVALUATIONS),
         ("nets:    ", "skills"),
         ("config:  ", folder::CONFIG),
-        ("report:  ", report::PAGE),
     ];
-    print(&lines.map(|(label, name)| format!("{label}{}\n", out.join(name).display())).concat())
+    lines.extend(page.map(|page| ("report:  ", page)));
+    let lines = lines.into_iter().map(|(label, name)| format!("{label}{}\n", out.join(name).display()));
+    print(&lines.collect::<String>())
 }
