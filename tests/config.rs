@@ -253,7 +253,7 @@ fn mistakes_on_the_command_line_name_it() {
         ("skill.dock.inputs=['lihgt']", "`lihgt` is not one of the inputs", "did you mean `light`"),
         ("skill.dock.inputs=['light', 'light']", "`light` is there twice", "once"),
         ("skill.dock.inputs=[]", "is empty", "at least one"),
-        ("skill.dock.inputs=['sonar', 'sonar-far', 'light']", "72 values, more than 64", "24 each"),
+        ("skill.dock.inputs=['sonar', 'sonar-far', 'light']", "72 values, more than 64", "sonar 24"),
         ("skill.dock.children=['turn+15', 'follow']", "`follow` is neither an action nor a skill", "`move-12`, `dock`"),
         ("skill.dock.children=['turn15']", "`turn15` is neither an action", "did you mean `turn+15`"),
         ("skill.dock.children=['turn+15', 'turn+15']", "there twice", "once"),
@@ -375,7 +375,7 @@ fn mistakes_in_the_world_point_into_the_world_file() {
     assert!(text.starts_with("places"));
     for (from, to, message) in [
         ("charger = { box = [0, 0, 24, 24] }\n", "", "`docked` cannot happen: the world `world` has no charger"),
-        ("light = { at = [12, 12], range = 100 }\n", "", "the world `world` has no light"),
+        ("light = { at = [12, 12], range = 100 }\n", "", "`light` has nothing to show: the world `world` has no light"),
     ] {
         let config = FILE.replace("'bumpers'", "'light'");
         let error = attempt(&config, &WORLD.replace(from, to)).0.expect_err(message);
