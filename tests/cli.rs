@@ -210,19 +210,19 @@ fn usage_mistakes_are_refused_before_anything_is_done() {
         (&["--seeds", "4294967296"], &["is not a seed"]),
         (&["--seeds", "0..4294967295"], &["too many seeds"]),
         (&["--seeds=-1"], &["is not a seed"]),
-        (&["--set", "learning.rate"], &["--set learning.rate", "no `=`"]),
+        (&["--set", "learning.learning_rate"], &["--set learning.learning_rate", "no `=`"]),
         (&["--set", "=1"], &["is not the name of a key"]),
         (&["--set", "learning..rate=1"], &["is not the name of a key"]),
-        (&["--set", "learning.rate="], &["is not a value"]),
-        (&["--set", "learning.rate=[1"], &["is not a value"]),
-        (&["--set", "learning.rate=nan"], &["--set learning.rate=nan", "finite"]),
-        (&["--set", "learning.rate=-1"], &["--set learning.rate=-1", "more than 0"]),
-        (&["--set", "learning.rate=fast"], &["--set learning.rate=fast"]),
+        (&["--set", "learning.learning_rate="], &["is not a value"]),
+        (&["--set", "learning.learning_rate=[1"], &["is not a value"]),
+        (&["--set", "learning.learning_rate=nan"], &["--set learning.learning_rate=nan", "finite"]),
+        (&["--set", "learning.learning_rate=-1"], &["--set learning.learning_rate=-1", "more than 0"]),
+        (&["--set", "learning.learning_rate=fast"], &["--set learning.learning_rate=fast"]),
         (&["--set", "learning=3"], &["--set learning=3"]),
-        (&["--set", "learning.rate.x=3"], &["--set learning.rate.x=3"]),
+        (&["--set", "learning.learning_rate.x=3"], &["--set learning.learning_rate.x=3"]),
         (&["--set", "learning.ratee=1"], &["did you mean `rate`?"]),
         (&["--set", "skill.dokc.trials=1"], &["did you mean `dock`?"]),
-        (&["--set", "arm.taught-adm.learning.rate=1"], &["did you mean `taught-adam`?"]),
+        (&["--set", "arm.taught-adm.learning.learning_rate=1"], &["did you mean `taught-adam`?"]),
         (&["--set", "arms=['nobody']"], &["nobody"]),
         (&["--set", "arms=[]"], &["arms"]),
         (&["--iterations", "0"], &["--iterations"]),
@@ -298,7 +298,7 @@ fn places_that_cannot_be_written_are_refused() {
         ("/dev/null", "/dev/null"),
     ];
     for (out, says) in cases {
-        let tiny = ["--backend", "cpu", "--set", "teacher.bank=10", "--set", "teacher.episodes=1"];
+        let tiny = ["--backend", "cpu", "--set", "teacher.lessons=10", "--set", "teacher.eval_episodes=1"];
         desk.refuses(&[&["run", "docking.toml", "--out", out], &tiny[..]].concat(), 1, &[says, "--out"][..1]);
     }
 }

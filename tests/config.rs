@@ -3,8 +3,10 @@
 mod plans;
 
 use plans::{attempt_files, read_again, with};
-use skilltree::config::plan::{Action, Arm, Child, Event, Input, NoiseKind, Optimiser, Plan};
+use skilltree::config::plan::{Action, Arm, Child, Event, Input, Plan};
 use skilltree::config::{ConfigError, Overrides, Place, keys, load, parse_seeds};
+use skilltree::layout::HyperParams;
+use skilltree::layout::choices::{NOISE_GAUSSIAN, OPTIMISER_ADAM, OPTIMISER_SGD};
 use skilltree::train::allocate::Shape;
 use std::path::{Path, PathBuf};
 
@@ -25,9 +27,7 @@ fn refused(set: &[&str]) -> ConfigError {
 
 fn rate(plan: &Plan, arm: &str) -> f32 {
     let arm = plan.arms.iter().find(|a| a.name == arm).expect("the arm");
-    match arm.skills[0].learning.optimiser {
-        Optimiser::Sgd { rate, .. } | Optimiser::Adam { rate, .. } => rate,
-    }
+    arm.skills[0].params.learning_rate
 }
 
 #[test]
@@ -43,33 +43,39 @@ fn docking_is_as_published() {
     assert_eq!(names, ["taught-adam", "taught-sgd", "taught-td0", "untaught-adam", "untaught-sgd"]);
     for arm in &plan.arms {
         let noise = arm.noise;
-        assert_eq!((noise.kind, noise.actuator, noise.sonar), (NoiseKind::Gaussian, 0.08, 0.10));
+        assert_eq!((noise.kind, noise.actuator, noise.sonar), (NOISE_GAUSSIAN, 0.08, 0.10));
         let dock = &arm.skills[0];
         assert_eq!(arm.skills.len(), 1);
         assert_eq!(dock.name, "dock");
         assert_eq!(dock.inputs, [Input::Sonar { scale: 60.0 }, Input::Light, Input::Bumpers]);
         assert_eq!(dock.children, Action::ALL.map(Child::Action));
-        assert_eq!(dock.reward, [100.0, -10.0, 0.0, 0.0, 0.0]);
-        assert_eq!(dock.tested_at, plan.evaluate.at);
+        assert_eq!(dock.params.reward, [100.0, -10.0, 0.0, 0.0, 0.0]);
+        assert_eq!(dock.eval_at, plan.evaluate.at);
         assert_eq!(dock.starts, [("light-area".to_owned(), 0.8), ("anywhere".to_owned(), 0.2)]);
-        assert_eq!((dock.tests.as_str(), dock.ends), ("light-area", Event::Docked.bit()));
-        assert_eq!((dock.max_steps, dock.trials), (30, 300));
-        assert_eq!(dock.lessons, if arm.name.starts_with("untaught") { 0 } else { 10 });
+        assert_eq!((dock.eval_starts.as_str(), dock.goal), ("light-area", Event::Docked.bit()));
+        assert_eq!((dock.params.max_steps, dock.params.trials), (30, 300));
+        assert_eq!(dock.params.lessons, if arm.name.starts_with("untaught") { 0 } else { 10 });
     }
-    let learning = |i: usize| &plan.arms[i].skills[0].learning;
+    let learning = |i: usize| &plan.arms[i].skills[0].params;
     let (adam, sgd, td0) = (learning(0), learning(1), learning(2));
-    assert_eq!(adam.optimiser, Optimiser::Adam { rows: false, rate: 0.0015, beta1: 0.9, beta2: 0.999, epsilon: 1e-3 });
-    assert_eq!((adam.hidden, adam.init, adam.gamma, adam.lambda), (32, 0.2, 0.9, 0.95));
-    assert_eq!((adam.replays, adam.memory, adam.mean_age, adam.policy_threshold), (60, 300, 100.0, 0.05));
-    assert_eq!((adam.rate_end_share, adam.rate_trials, sgd.rate_end_share), (0.1, 300, 1.0));
-    assert!(adam.timeout_terminal && adam.mask_blocked && adam.taught_always);
-    assert_eq!(sgd.optimiser, Optimiser::Sgd { rate: 0.15, momentum: 0.0 });
-    assert_eq!((sgd.init, sgd.gamma, sgd.lambda, sgd.policy_threshold), (0.2, 0.95, 0.8, 0.001));
-    assert_eq!((sgd.replays, sgd.memory, sgd.taught_passes, sgd.taught_replays), (30, 100, 5, 2));
-    assert!(!sgd.timeout_terminal && !sgd.mask_blocked);
+    assert_eq!((adam.optimiser, adam.learning_rate), (OPTIMISER_ADAM, 0.0015));
+    assert_eq!((adam.beta1, adam.beta2, adam.epsilon), (0.9, 0.999, 1e-3));
+    assert_eq!((adam.hidden, adam.init_range, adam.gamma, adam.lambda), (32, 0.2, 0.9, 0.95));
+    assert_eq!(
+        (adam.replays, adam.replay_capacity, adam.replay_mean_age, adam.policy_threshold),
+        (60, 300, 100.0, 0.05)
+    );
+    assert_eq!((adam.learning_rate_end_share, adam.learning_rate_trials, sgd.learning_rate_end_share), (0.1, 300, 1.0));
+    assert_eq!([adam.timeout_terminal, adam.mask_blocked, adam.taught_as_policy], [1; 3]);
+    assert_eq!((sgd.optimiser, sgd.learning_rate, sgd.beta1), (OPTIMISER_SGD, 0.15, 0.0));
+    assert_eq!((sgd.init_range, sgd.gamma, sgd.lambda, sgd.policy_threshold), (0.2, 0.95, 0.8, 0.001));
+    assert_eq!((sgd.replays, sgd.replay_capacity, sgd.pretrain_epochs, sgd.taught_replays), (30, 100, 5, 2));
+    assert_eq!((sgd.timeout_terminal, sgd.mask_blocked), (0, 0));
     assert_eq!(td0.lambda, 0.0);
-    assert_eq!(&skilltree::config::plan::Learning { lambda: 0.95, ..td0.clone() }, adam);
-    assert_eq!((learning(3), learning(4)), (adam, sgd));
+    assert_eq!(&HyperParams { lambda: 0.95, ..*td0 }, adam);
+    for (untaught, taught) in [(learning(3), adam), (learning(4), sgd)] {
+        assert_eq!(&HyperParams { lessons: 10, ..*untaught }, taught);
+    }
 }
 
 #[test]
@@ -79,10 +85,11 @@ fn quick_is_the_papers_main_comparison() {
     let wanted: Vec<_> = whole.arms.iter().filter(|arm| ["hierarchical", "monolithic"].contains(&&*arm.name)).collect();
     assert_eq!(quick.arms.len(), wanted.len());
     for (arm, other) in quick.arms.iter().zip(wanted) {
-        let trials = |arm: &Arm| arm.skills.iter().map(|skill| (skill.name.clone(), skill.trials)).collect::<Vec<_>>();
+        let trials =
+            |arm: &Arm| arm.skills.iter().map(|skill| (skill.name.clone(), skill.params.trials)).collect::<Vec<_>>();
         assert_eq!((&arm.name, trials(arm)), (&other.name, trials(other)));
         let (root, same) = (arm.skills.last().expect("a root"), other.skills.last().expect("a root"));
-        assert_eq!((&root.learning, &root.applicable), (&same.learning, &same.applicable));
+        assert_eq!((&root.params, &root.applicable), (&same.params, &same.applicable));
     }
     assert_ne!(quick.title, whole.title);
 }
@@ -105,16 +112,16 @@ fn every_default_is_read_and_in_range() {
     assert_eq!(plan.arms.len(), 1);
     assert_eq!(plan.arms[0].name, "base");
     // The defaults are the taught Adam arm of docking.
-    assert_eq!(plan.arms[0].skills[0].learning, docking(&[]).arms[0].skills[0].learning);
+    assert_eq!(plan.arms[0].skills[0].params, docking(&[]).arms[0].skills[0].params);
     assert_eq!(plan.arms[0].noise, docking(&[]).arms[0].noise);
     assert_eq!((plan.arms[0].teacher, plan.evaluate), (docking(&[]).arms[0].teacher, docking(&[]).evaluate));
-    for key in keys::ALL {
+    for key in keys::all() {
         let last = key.path.rsplit('.').next().expect("a name");
         let written = plan.resolved.contains(&format!("{last} = ")) || plan.resolved.contains(&format!(".{last}]"));
-        let rare = ["arms", "root", "extends", "arm.*.like", "skill.*.tested_at"];
+        let rare = ["arms", "root", "extends", "arm.*.extends", "skill.*.eval_at"];
         let left_out = rare.contains(&key.path) || key.path.starts_with("sweep.");
         assert_eq!(written, !left_out, "{}", key.path);
-        assert!(!key.meaning.is_empty() && !key.allowed.to_string().is_empty());
+        assert!(!key.doc.is_empty() && !key.allowed.to_string().is_empty());
     }
 }
 
@@ -124,7 +131,7 @@ fn the_resolved_text_gives_the_same_plan() {
         &[],
         &["arms=[\"untaught-sgd\", \"taught-adam\"]", "title=\"a \\\"quoted\\\" \\\\ title\\nin two lines\""],
         &[
-            "arm.taught-sgd.learning.rate=0.3",
+            "arm.taught-sgd.learning.learning_rate=0.3",
             "learning.gamma=0.123456789",
             "seed=4294967295",
             "learning.epsilon=1e-10",
@@ -142,25 +149,26 @@ fn the_resolved_text_gives_the_same_plan() {
 #[test]
 fn layers_lie_over_one_another() {
     // On a base key: wins over the file's base, not over an arm's own key.
-    let plan = docking(&["learning.rate=0.01"]);
+    let plan = docking(&["learning.learning_rate=0.01"]);
     assert_eq!((rate(&plan, "taught-adam"), rate(&plan, "taught-sgd")), (0.01, 0.15));
     // On an arm's key: that arm only.
-    let plan = docking(&["arm.taught-sgd.learning.rate=0.3"]);
+    let plan = docking(&["arm.taught-sgd.learning.learning_rate=0.3"]);
     assert_eq!(
         (rate(&plan, "taught-sgd"), rate(&plan, "untaught-sgd"), rate(&plan, "taught-adam")),
         (0.3, 0.15, 0.0015)
     );
     // On a skill's learning: over `learning` of base and arm.
-    let plan = docking(&["skill.dock.learning.rate=0.02"]);
+    let plan = docking(&["skill.dock.learning.learning_rate=0.02"]);
     assert_eq!((rate(&plan, "taught-adam"), rate(&plan, "taught-sgd")), (0.02, 0.02));
     // The later of two wins, and an arm without the key takes it.
     let plan = docking(&["skill.dock.trials=5", "skill.dock.trials = 7", "arm.taught-td0.skill.dock.trials=9"]);
-    assert_eq!(plan.arms.iter().map(|a| a.skills[0].trials).collect::<Vec<_>>(), [7, 7, 9, 7, 7]);
+    assert_eq!(plan.arms.iter().map(|a| a.skills[0].params.trials).collect::<Vec<_>>(), [7, 7, 9, 7, 7]);
     // Rewards merge, start shares are replaced.
-    let plan = docking(&["skill.dock.reward.collision=0", "skill.dock.starts=light-area", "skill.dock.tests=room:A"]);
-    assert_eq!(plan.arms[0].skills[0].reward, [100.0, 0.0, 0.0, 0.0, 0.0]);
+    let plan =
+        docking(&["skill.dock.reward.collision=0", "skill.dock.starts=light-area", "skill.dock.eval_starts=room:A"]);
+    assert_eq!(plan.arms[0].skills[0].params.reward, [100.0, 0.0, 0.0, 0.0, 0.0]);
     assert_eq!(plan.arms[0].skills[0].starts, [("light-area".to_owned(), 1.0)]);
-    assert_eq!(plan.arms[0].skills[0].tests, "room:A");
+    assert_eq!(plan.arms[0].skills[0].eval_starts, "room:A");
     let plan = docking(&["skill.dock.starts={light-area=0.5, near-doors=0.5}"]);
     assert_eq!(plan.arms[0].skills[0].starts.len(), 2);
     // A subset of the arms keeps the file's order; noise is an arm's too.
@@ -214,19 +222,19 @@ fn seeds_are_ranges_and_lists() {
 #[test]
 fn mistakes_on_the_command_line_name_it() {
     for (set, message, hint) in [
-        ("learning.rate", "no `=`", "--set key=value"),
+        ("learning.learning_rate", "no `=`", "--set key=value"),
         ("=3", "`` is not the name of a key", "--set key=value"),
         ("learning..rate=3", "`learning..rate` is not the name", "--set key=value"),
-        ("learning.rate=", "`` is not a value", "number"),
+        ("learning.learning_rate=", "`` is not a value", "number"),
         ("arms=[taught-adam]", "`[taught-adam]` is not a value", "quotes"),
         ("title=two words", "`two words` is not a value", "quotes"),
         ("learning.rte=0.1", "unknown key `learning.rte`", "did you mean `rate`"),
         ("lerning.rate=0.1", "unknown key `lerning`", "did you mean `learning`"),
-        ("learning.rate=fast", "must be a number, not a string", "more than 0 and at most 10"),
-        ("learning.rate=0", "out of range", "more than 0"),
-        ("learning.rate=1e-60", "is 1e-60, which is out of range", "more than 0"),
-        ("learning.rate=nan", "`nan` is not a number", "finite"),
-        ("learning.rate=-inf", "`-inf` is not a number", "finite"),
+        ("learning.learning_rate=fast", "must be a number, not a string", "more than 0 and at most 10"),
+        ("learning.learning_rate=0", "out of range", "more than 0"),
+        ("learning.learning_rate=1e-60", "is 1e-60, which is out of range", "more than 0"),
+        ("learning.learning_rate=nan", "`nan` is not a number", "finite"),
+        ("learning.learning_rate=-inf", "`-inf` is not a number", "finite"),
         ("learning.gamma=1.5", "out of range", "between 0 and 1"),
         ("learning.beta1=0.99999999999", "out of range", "less than 1"),
         ("learning.hidden=33", "out of range", "between 1 and 32"),
@@ -241,8 +249,8 @@ fn mistakes_on_the_command_line_name_it() {
         ("skill.dock.trials=-3", "out of range", "between 0 and 100000"),
         ("skill.dock.trails=3", "unknown key `skill.dock.trails`", "did you mean `trials`"),
         ("skill.dock.max_steps=256", "out of range", "between 1 and 255"),
-        ("skill.dock.lessons=257", "is 257, more than there are", "raise `teacher.bank`"),
-        ("skill.dock.tests=light-aria", "no region `light-aria`", "did you mean `light-area`"),
+        ("skill.dock.lessons=257", "is 257, more than there are", "raise `teacher.lessons`"),
+        ("skill.dock.eval_starts=light-aria", "no region `light-aria`", "did you mean `light-area`"),
         ("skill.dock.starts=room:D", "no region `room:D`", "`room:A`"),
         ("skill.dock.starts={anywhere=0.5}", "sum to 0.5", "sum to 1"),
         ("skill.dock.starts={anywhere=-1, light-area=2}", "out of range", "more than 0"),
@@ -259,7 +267,7 @@ fn mistakes_on_the_command_line_name_it() {
         ("skill.dock.children=['turn+15', 'turn+15']", "there twice", "once"),
         ("skill.dock.reward={dock=1}", "`dock` is not one of the events", "`docked`"),
         ("skill.dock.reward.docked=true", "must be a number", "between"),
-        ("skill.dock.ends=['door']", "`door` is not one of the events", "`passed-door`"),
+        ("skill.dock.goal=['door']", "`door` is not one of the events", "`passed-door`"),
         ("robot.noise.sonar=0.6", "out of range", "between 0 and 0.5"),
         ("robot.noise.kind=flat", "`flat` is not one", "`gaussian`"),
         ("robot.nose.kind=flat", "unknown key `robot.nose`", "did you mean `noise`"),
@@ -274,7 +282,7 @@ fn mistakes_on_the_command_line_name_it() {
         ("arms=['tought-adam']", "`tought-adam` is not one of the arms", "did you mean `taught-adam`"),
         ("arms=[]", "no arm is chosen", "`taught-adam`"),
         ("arms=['taught-adam', 'taught-adam']", "there twice", "once"),
-        ("arm.tough-adam.learning.rate=1", "there is no arm `tough-adam`", "did you mean `taught-adam`"),
+        ("arm.tough-adam.learning.learning_rate=1", "there is no arm `tough-adam`", "did you mean `taught-adam`"),
         ("arm.taught-adam.evaluate.episodes=1", "`evaluate` is the same for all arms", "an arm may change"),
         ("arm.taught-adam.lerning.rate=1", "unknown key `arm.taught-adam.lerning`", "did you mean `learning`"),
         ("arm.taught-adam.skill.dok.trials=1", "there is no skill `dok`", "did you mean `dock`"),
@@ -294,12 +302,12 @@ const FILE: &str = "\
 title = 'test'
 world = 'world.toml'
 [learning]
-rate = 0.01
+learning_rate = 0.01
 [skill.dock]
 inputs = ['sonar', 'bumpers']
 reward = { docked = 100 }
 starts = 'anywhere'
-ends = ['docked']
+goal = ['docked']
 [arm.one]
 [arm.two]
 learning.gamma = 0.5
@@ -322,14 +330,14 @@ fn mistakes_in_files_have_their_line() {
     attempt(FILE, WORLD).0.unwrap_or_else(|error| panic!("{error}"));
     // What is replaced, by what, the line of the complaint (0: the file), words of its message, words of its hint.
     for (from, to, line, message, hint) in [
-        ("rate = 0.01", "rte = 0.01", 4, "unknown key `learning.rte`", "did you mean `rate`"),
-        ("rate = 0.01", "rate = '0.01'", 4, "must be a number, not a string", "more than 0"),
-        ("rate = 0.01", "rate = nan", 4, "`nan` is not a number", "finite"),
-        ("rate = 0.01", "rate = -0.01", 4, "out of range", "more than 0"),
-        ("rate = 0.01", "rate = 0.01\nrate = 0.02", 5, "duplicate key", "toml.io"),
-        ("rate = 0.01", "rate =", 4, "not valid TOML", "toml.io"),
-        ("rate = 0.01", "optimiser = 'sgd'", 4, "sgd has no default rate", "rate = 0.15"),
-        ("rate = 0.01", "momentum = 0.9", 4, "`learning.momentum` has no effect", "sgd"),
+        ("learning_rate = 0.01", "rte = 0.01", 4, "unknown key `learning.rte`", "did you mean `rate`"),
+        ("learning_rate = 0.01", "rate = '0.01'", 4, "must be a number, not a string", "more than 0"),
+        ("learning_rate = 0.01", "rate = nan", 4, "`nan` is not a number", "finite"),
+        ("learning_rate = 0.01", "rate = -0.01", 4, "out of range", "more than 0"),
+        ("learning_rate = 0.01", "learning_rate = 0.01\nlearning_rate = 0.02", 5, "duplicate key", "toml.io"),
+        ("learning_rate = 0.01", "rate =", 4, "not valid TOML", "toml.io"),
+        ("learning_rate = 0.01", "optimiser = 'sgd'", 4, "sgd has no default rate", "learning_rate = 0.15"),
+        ("learning_rate = 0.01", "momentum = 0.9", 4, "`learning.momentum` has no effect", "sgd"),
         ("learning.gamma = 0.5", "learning.gama = 0.5", 12, "unknown key `learning.gama`", "did you mean `gamma`"),
         ("learning.gamma = 0.5", "learning.gamma = 2", 12, "out of range", "between 0 and 1"),
         ("learning.gamma = 0.5", "seeds = '0..2'", 12, "`seeds` is the same for all arms", "an arm may change"),
@@ -439,9 +447,9 @@ fn a_config_may_lie_over_another() {
     assert_eq!(arms, ["one", "two", "mine"]);
     assert_eq!(plan.evaluate, below.evaluate);
     let mut skill = below.arms[0].skills[0].clone();
-    let gammas: Vec<f32> = plan.arms.iter().map(|arm| arm.skills[0].learning.gamma).collect();
+    let gammas: Vec<f32> = plan.arms.iter().map(|arm| arm.skills[0].params.gamma).collect();
     assert_eq!(gammas, [0.25, 0.5, 0.25]);
-    skill.learning.gamma = 0.25;
+    skill.params.gamma = 0.25;
     assert_eq!(plan.arms[2].skills, [skill]);
     // The resolved text stands alone.
     read_again(&plan);
@@ -467,18 +475,18 @@ fn an_arm_may_be_like_another() {
         "{FILE}{}",
         "\
 [arm.three]
-like = 'two'
+extends = 'two'
 skill.dock.max_steps = 50
 [arm.four]
-like = 'three'
+extends = 'three'
 learning.gamma = 0.75
-learning.rate = 0.5
+learning.learning_rate = 0.5
 "
     );
     let plan = attempt(&text, WORLD).0.unwrap_or_else(|error| panic!("{error}"));
     let numbers = |name: &str| {
         let skill = &plan.arms.iter().find(|arm| arm.name == name).expect("the arm").skills[0];
-        (skill.learning.gamma, rate(&plan, name), skill.max_steps)
+        (skill.params.gamma, rate(&plan, name), skill.params.max_steps)
     };
     let expected = [("one", (0.9, 0.01, 30)), ("two", (0.5, 0.01, 30)), ("three", (0.5, 0.01, 50))];
     for (name, expected) in expected.into_iter().chain([("four", (0.75, 0.5, 50))]) {
@@ -486,10 +494,10 @@ learning.rate = 0.5
     }
     read_again(&plan);
     for (from, to, line, message) in [
-        ("like = 'two'", "like = 'six'", "like = 'six'", "`six` is not one of the arms"),
-        ("like = 'two'", "like = 'four'", "like = ", "in a circle"),
-        ("like = 'two'", "like = 3", "like = 3", "must be a string"),
-        ("title", "like = 'two'\ntitle", "like = 'two'", "unknown key `like`"),
+        ("extends = 'two'", "extends = 'six'", "extends = 'six'", "`six` is not one of the arms"),
+        ("extends = 'two'", "extends = 'four'", "extends = ", "in a circle"),
+        ("extends = 'two'", "like = 3", "like = 3", "must be a string"),
+        ("title", "extends = 'two'\ntitle", "extends = 'two'", "unknown key `like`"),
     ] {
         let error = attempt(&text.replacen(from, to, 1), WORLD).0.err().unwrap_or_else(|| panic!("accepted {to}"));
         println!("{error}\n");

@@ -3,11 +3,13 @@
 mod plans;
 
 use plans::{attempt_files, read_again, with};
-use skilltree::config::plan::{
-    Action, Alteration, Arm, Backup, Child, Choice, Event, Input, Noise, NoiseKind, Persistence, Plan, Robot, Skill,
-    Threshold,
-};
+use skilltree::config::plan::{Action, Alteration, Arm, Child, Event, Input, Noise, Plan, Skill, Threshold};
 use skilltree::config::{ConfigError, Overrides, Place, load};
+use skilltree::layout::HyperParams;
+use skilltree::layout::choices::{
+    BACKUP_DECISIONS, BACKUP_PERSISTENT, BACKUP_STEPS, NOISE_UNIFORM, POLICY_FIXED_PRIORITY, POLICY_LEARNED,
+    POLICY_RANDOM,
+};
 use skilltree::layout::sensors::SONAR_SCALE;
 use std::path::PathBuf;
 
@@ -20,17 +22,17 @@ inputs = ['sonar-compass(40)', 'compass2', 'values', 'applicable', 'lit', 'runni
 children = ['explore', 'dock']
 applicable = { dock = 0.25 }
 reward = { docked = 100 }
-tested_at = [0, 20, 60]
+eval_at = [0, 20, 60]
 [skill.left]
 mirror = 'right'
-tested_at = [0]
+eval_at = [0]
 [skill.right]
 inputs = ['sonar', 'bumpers']
 children = ['turn+15', 'turn-60', 'move+12', 'move-12', 'turn-15', 'turn+60']
 reward = { beside-right = 3, beside-left = -2, collision = -1 }
-ends = ['beside-right', 'passed-door']
+goal = ['beside-right', 'passed-door']
 starts = 'room:A'
-tests = 'room:B'
+eval_starts = 'room:B'
 max_steps = 77
 lessons = 5
 trials = 66
@@ -54,9 +56,9 @@ root = 'recharge'
 world = 'worlds/easy.toml'
 skill.recharge.children = ['dock', 'right']
 skill.recharge.applicable = { right = 'learned' }
-[alter.moved]
+[transfer.moved]
 world = 'other/easy.toml'
-[alter.loud]
+[transfer.loud]
 noise = { actuator = 0.16, kind = 'uniform' }
 ";
 const FLAT: &str = "\
@@ -147,8 +149,8 @@ fn an_arm_trains_the_tree_of_its_root() {
 fn a_mirror_image_takes_everything_from_its_skill() {
     let plan = relatives(&[]);
     let (left, right) = (skill(&plan, "full", "left"), skill(&plan, "full", "right"));
-    assert_eq!((right.reward, right.mirror), ([0.0, -1.0, 0.0, 3.0, -2.0], None));
-    assert_eq!((right.tested_at.as_slice(), left.tested_at.as_slice()), (&[0, 10, 20][..], &[0][..]));
+    assert_eq!((right.params.reward, right.mirror), ([0.0, -1.0, 0.0, 3.0, -2.0], None));
+    assert_eq!((right.eval_at.as_slice(), left.eval_at.as_slice()), (&[0, 10, 20][..], &[0][..]));
     let turned = [
         Action::TurnRight15,
         Action::TurnLeft60,
@@ -161,29 +163,39 @@ fn a_mirror_image_takes_everything_from_its_skill() {
         name: "left".to_owned(),
         children: turned.map(Child::Action).to_vec(),
         mirror: Some(0),
-        reward: [0.0, -1.0, 0.0, -2.0, 3.0],
-        ends: Event::BesideLeft.bit() | Event::PassedDoor.bit(),
-        tested_at: vec![0],
-        lessons: 0,
-        trials: 0,
+        params: HyperParams { reward: [0.0, -1.0, 0.0, -2.0, 3.0], lessons: 0, trials: 0, ..right.params },
+        goal: Event::BesideLeft.bit() | Event::PassedDoor.bit(),
+        eval_at: vec![0],
         ..right.clone()
     };
     assert_eq!(*left, image);
-    assert_eq!((left.max_steps, left.learning.gamma, left.tests.as_str()), (77, 0.75, "room:B"));
-    assert_eq!((right.lessons, right.trials), (5, 66));
+    assert_eq!((left.params.max_steps, left.params.gamma, left.eval_starts.as_str()), (77, 0.75, "room:B"));
+    assert_eq!((right.params.lessons, right.params.trials), (5, 66));
     // Keys beside the name are unused, until an arm says that there is no mirror.
     let own = "arm.sides.skill.left={ mirror = false, inputs = ['compass'], reward = { passed-door = 9 } }";
     let plan = relatives(&["skill.left.trials=9", own]);
     let (left, alone) = (skill(&plan, "full", "left"), skill(&plan, "sides", "left"));
-    assert_eq!((left.trials, left.mirror), (0, Some(0)));
-    assert_eq!((alone.trials, alone.mirror, &alone.inputs), (9, None, &vec![Input::Compass]));
+    assert_eq!((left.params.trials, left.mirror), (0, Some(0)));
+    assert_eq!((alone.params.trials, alone.mirror, &alone.inputs), (9, None, &vec![Input::Compass]));
     assert_eq!(names(arm(&plan, "sides")), ["left", "explore"]);
     // A skill without nets has no image of them.
-    let plan = relatives(&["skill.right.planned=true", "arm.easy.skill.recharge.applicable={ right = 0.5 }"]);
+    let plan = relatives(&["skill.right.oracle=true", "arm.easy.skill.recharge.applicable={ right = 0.5 }"]);
     for name in ["left", "right"] {
         let planned = skill(&plan, "full", name);
-        assert_eq!((planned.planned, planned.mirror, planned.trials, planned.lessons), (true, None, 0, 0));
+        assert_eq!((planned.oracle, planned.mirror, planned.params.trials, planned.params.lessons), (true, None, 0, 0));
     }
+}
+
+/// How a skill keeps to its child: in training, in tests, applicability, interrupt, steps.
+fn persistence(skill: &Skill) -> [u32; 5] {
+    let own = &skill.params;
+    [own.persist_training, own.persist_tests, own.applicability, own.interrupt, own.child_timeout]
+}
+
+/// What its robot remembers, and the band beside a wall.
+fn memory(skill: &Skill) -> (f32, f32, f32, u32, u32) {
+    let own = &skill.params;
+    (own.light_decay, own.door_decay, own.range_decay, own.beside_near, own.beside_far)
 }
 
 #[test]
@@ -209,49 +221,44 @@ fn skills_say_what_they_see_and_how_they_choose() {
         Input::SonarCompass { scale: SONAR_SCALE },
     ];
     assert_eq!(skill(&plan, "full", "explore").inputs, seen);
-    assert_eq!((recharge.tested_at.as_slice(), recharge.choice), (&[0, 20, 60][..], Choice::Learned));
-    assert!(!recharge.planned && recharge.mirror.is_none());
-    let persistence =
-        Persistence { training: true, tests: true, applicability: true, interrupt: true, decision_steps: 30 };
-    assert_eq!(recharge.persistence, persistence);
-    let robot = Robot { light_trace: 0.97, door_trace: 0.97, range_mean: 0.9, beside_near: 15.0, beside_far: 30.0 };
-    assert_eq!(arm(&plan, "full").robot, robot);
-    let learning = &recharge.learning;
-    assert_eq!((learning.shared_net, learning.backup, learning.advantage_scale), (false, Backup::Decisions, 1.0));
-    assert_eq!((learning.inner_share, learning.child_inverse_temperature), (0.1, 60.0));
+    assert_eq!((recharge.eval_at.as_slice(), recharge.params.policy), (&[0, 20, 60][..], POLICY_LEARNED));
+    assert!(!recharge.oracle && recharge.mirror.is_none());
+    assert_eq!(persistence(recharge), [1, 1, 1, 1, 30]);
+    assert_eq!(memory(recharge), (0.97, 0.97, 0.9, 15, 30));
+    let learning = &recharge.params;
+    assert_eq!((learning.shared_net, learning.backup, learning.advantage_scale), (0, BACKUP_DECISIONS, 1.0));
+    assert_eq!((learning.intra_skill_share, learning.child_inverse_temperature), (0.1, 60.0));
 
     let plan = relatives(&[
-        "skill.recharge.choice=ordered",
+        "skill.recharge.policy=fixed-priority",
         "skill.recharge.persistence=training",
         "skill.recharge.applicability=false",
         "skill.recharge.interrupt=false",
-        "skill.recharge.decision_steps=0",
+        "skill.recharge.child_timeout=0",
         "skill.recharge.trials=0",
         "skill.recharge.applicable={ explore = -1, dock = 'learned(0.8)' }",
-        "skill.dock.ends=['docked']",
+        "skill.dock.goal=['docked']",
         "skill.recharge.learning={ shared_net = true, backup = 'steps', advantage_scale = 1000 }",
-        "arm.full.learning={ inner_share = 1, child_inverse_temperature = 0, backup = 'persistent' }",
-        "skill.dock.choice=random",
+        "arm.full.learning={ intra_skill_share = 1, child_inverse_temperature = 0, backup = 'persistent' }",
+        "skill.dock.policy=random",
         "skill.dock.persistence=false",
-        "robot.memory={ light = 0, doors = 0.5, ranges = 0.25 }",
+        "robot.memory={ light_decay = 0, door_decay = 0.5, range_decay = 0.25 }",
         "arm.full.robot.beside={ near = 0, far = 127 }",
     ]);
     let recharge = skill(&plan, "full", "recharge");
-    let persistence =
-        Persistence { training: true, tests: false, applicability: false, interrupt: false, decision_steps: 0 };
-    assert_eq!((recharge.choice, recharge.persistence, recharge.trials), (Choice::Ordered, persistence, 0));
+    assert_eq!(persistence(recharge), [1, 0, 0, 0, 0]);
+    assert_eq!((recharge.params.policy, recharge.params.trials), (POLICY_FIXED_PRIORITY, 0));
     assert_eq!(recharge.applicable, [Some(Threshold::Fixed(-1.0)), Some(Threshold::Learned(0.8))]);
-    let learning = &recharge.learning;
-    assert_eq!((learning.shared_net, learning.backup, learning.advantage_scale), (true, Backup::Steps, 1000.0));
-    assert_eq!((learning.inner_share, learning.child_inverse_temperature), (1.0, 0.0));
+    let learning = &recharge.params;
+    assert_eq!((learning.shared_net, learning.backup, learning.advantage_scale), (1, BACKUP_STEPS, 1000.0));
+    assert_eq!((learning.intra_skill_share, learning.child_inverse_temperature), (1.0, 0.0));
     let dock = skill(&plan, "full", "dock");
-    assert_eq!((dock.choice, dock.learning.backup), (Choice::Random, Backup::Persistent));
-    assert_eq!((dock.persistence.training, dock.persistence.tests), (false, false));
-    let robot = Robot { light_trace: 0.0, door_trace: 0.5, range_mean: 0.25, beside_near: 0.0, beside_far: 127.0 };
-    assert_eq!(arm(&plan, "full").robot, robot);
-    assert_eq!(arm(&plan, "easy").robot, Robot { beside_near: 15.0, beside_far: 30.0, ..robot });
-    let planned = skill(&relatives(&["skill.dock.planned=true", "skill.dock.lessons=9"]), "full", "dock").clone();
-    assert_eq!((planned.planned, planned.trials, planned.lessons), (true, 0, 0));
+    assert_eq!((dock.params.policy, dock.params.backup), (POLICY_RANDOM, BACKUP_PERSISTENT));
+    assert_eq!(persistence(dock)[..2], [0, 0]);
+    assert_eq!(memory(recharge), (0.0, 0.5, 0.25, 0, 127));
+    assert_eq!(memory(skill(&plan, "easy", "recharge")), (0.0, 0.5, 0.25, 15, 30));
+    let planned = skill(&relatives(&["skill.dock.oracle=true", "skill.dock.lessons=9"]), "full", "dock").clone();
+    assert_eq!((planned.oracle, planned.params.trials, planned.params.lessons), (true, 0, 0));
 }
 
 #[test]
@@ -262,7 +269,7 @@ fn worlds_are_read_once_and_named_for_the_run_folder() {
     assert_eq!((arm(&plan, "full").world, arm(&plan, "sides").world, arm(&plan, "easy").world), (0, 0, 1));
     assert_ne!(plan.world().light, plan.world_of(arm(&plan, "easy")).light);
     assert!(plan.worlds[0].text.ends_with(FLAT));
-    let loud = Noise { kind: NoiseKind::Uniform, actuator: 0.16, ..arm(&plan, "full").noise };
+    let loud = Noise { kind: NOISE_UNIFORM, actuator: 0.16, ..arm(&plan, "full").noise };
     let alterations = [
         Alteration { name: "moved".to_owned(), world: Some(2), noise: None },
         Alteration { name: "loud".to_owned(), world: None, noise: Some(loud) },
@@ -272,10 +279,10 @@ fn worlds_are_read_once_and_named_for_the_run_folder() {
     // The same file under other names is one world; worlds of arms that are not run are there all the same.
     let plan = relatives(&[
         "arm.full.world=worlds/../worlds/flat.toml",
-        "alter.moved.world=./worlds/easy.toml",
-        "alter.moved.noise.sonar=0.5",
+        "transfer.moved.world=./worlds/easy.toml",
+        "transfer.moved.noise.sonar=0.5",
         "robot.noise.sonar=0.25",
-        "alter.loud.world=worlds/flat.toml",
+        "transfer.loud.world=worlds/flat.toml",
         "arms=['sides']",
     ]);
     assert_eq!((plan.worlds.len(), plan.arms.len(), plan.arms[0].world), (2, 1, 0));
@@ -316,7 +323,7 @@ fn trees_and_worlds_that_cannot_be_are_refused() {
         ("root=3", "`root` must be a string", "quotes"),
         ("arm.full.world=worlds/eazy.toml", "cannot read the world file: there is no such file", "looked for at"),
         ("arm.full.world=3", "`world` must be a string", "quotes"),
-        ("arm.full.alter={}", "`alter` is the same for all arms", "`world`, `root`"),
+        ("arm.full.transfer={}", "`transfer` is the same for all arms", "`world`, `root`"),
         ("arm.full.wrld=x", "unknown key `arm.full.wrld`", "did you mean `world`"),
         ("skill.recharge.children=['explore', 'dok']", "`dok` is neither an action nor a skill", "`dock`"),
         ("skill.spare.children=['dok']", "`dok` is neither an action nor a skill", "did you mean `dock`"),
@@ -342,16 +349,16 @@ fn trees_and_worlds_that_cannot_be_are_refused() {
         ("skill.dock.inputs=['lit(3)']", "`lit(3)` is not one of the inputs", "`sonar-compass`"),
         ("skill.dock.inputs=['compass3']", "`compass3` is not one of the inputs", "did you mean `compass`"),
         ("skill.dock.inputs=['light', 'sonar', 'sonar-compass']", "72 values, more than 64", "running 1 per child"),
-        ("skill.recharge.choice=lerned", "`lerned` is not one of the possible values", "did you mean `learned`"),
+        ("skill.recharge.policy=lerned", "`lerned` is not one of the possible values", "did you mean `learned`"),
         ("skill.recharge.persistence=tests", "must be true, false or \"training\"", "not in tests"),
         ("skill.recharge.persistence=1", "must be true, false or \"training\"", "not in tests"),
         ("skill.recharge.applicability=1", "must be true or false", "without quotes"),
         ("skill.recharge.interrupt=1", "must be true or false", "without quotes"),
-        ("skill.recharge.decision_steps=256", "out of range", "between 0 and 255"),
-        ("skill.recharge.tested_at=[3, 2]", "`skill.recharge.tested_at[1]` does not rise", "ascending"),
-        ("skill.left.tested_at=5", "must be a list", "[ ..., ... ]"),
-        ("skill.recharge.planned=true", "`recharge` chooses among skills and cannot be planned", "actions only"),
-        ("skill.recharge.planned=yes", "must be true or false", "without quotes"),
+        ("skill.recharge.child_timeout=256", "out of range", "between 0 and 255"),
+        ("skill.recharge.eval_at=[3, 2]", "`skill.recharge.eval_at[1]` does not rise", "ascending"),
+        ("skill.left.eval_at=5", "must be a list", "[ ..., ... ]"),
+        ("skill.recharge.oracle=true", "`recharge` chooses among skills and cannot be planned", "actions only"),
+        ("skill.recharge.oracle=yes", "must be true or false", "without quotes"),
         ("skill.recharge.lessons=1", "`recharge` cannot have lessons: nobody demonstrates skills", "lessons = 0"),
         ("skill.left.mirror=rigt", "`rigt` is not one of the skills", "did you mean `right`"),
         ("skill.left.mirror=true", "must be the name of a skill, or false", "mirror = false"),
@@ -365,16 +372,16 @@ fn trees_and_worlds_that_cannot_be_are_refused() {
         ("skill.left.trails=3", "unknown key `skill.left.trails`", "did you mean `trials`"),
         ("skill.left.learning.rte=3", "unknown key `skill.left.learning.rte`", "did you mean `rate`"),
         ("skill.spare.trails=3", "unknown key `skill.spare.trails`", "did you mean `trials`"),
-        ("arm.full.skill.spare.tests=3", "`skill.spare.tests` must be a string", "quotes"),
-        ("skill.spare.tests=attic", "has no region `attic`", "`anywhere`"),
+        ("arm.full.skill.spare.eval_starts=3", "`skill.spare.eval_starts` must be a string", "quotes"),
+        ("skill.spare.eval_starts=attic", "has no region `attic`", "`anywhere`"),
         (
-            "skill.recharge.ends=['beside-rigt']",
+            "skill.recharge.goal=['beside-rigt']",
             "`beside-rigt` is not one of the events",
             "did you mean `beside-right`",
         ),
-        ("robot.memory.light=1", "out of range", "less than 1"),
-        ("robot.memory.doors=-0.1", "out of range", "at least 0"),
-        ("robot.memory.range=0", "unknown key `robot.memory.range`", "did you mean `ranges`"),
+        ("robot.memory.light_decay=1", "out of range", "less than 1"),
+        ("robot.memory.door_decay=-0.1", "out of range", "at least 0"),
+        ("robot.memory.range_decay=0", "unknown key `robot.memory.range_decay`", "did you mean `ranges`"),
         (
             "robot.beside.near=30",
             "`robot.beside.near` is 30, which is not less than `robot.beside.far`, 30",
@@ -386,22 +393,30 @@ fn trees_and_worlds_that_cannot_be_are_refused() {
         ("learning.backup=step", "`step` is not one of the possible values", "did you mean `steps`"),
         ("learning.shared_net=1", "must be true or false", "without quotes"),
         ("learning.advantage_scale=0.5", "out of range", "between 1 and 1000"),
-        ("arm.full.learning.inner_share=1.5", "out of range", "between 0 and 1"),
+        ("arm.full.learning.intra_skill_share=1.5", "out of range", "between 0 and 1"),
         ("skill.dock.learning.child_inverse_temperature=-1", "out of range", "between 0 and 10000"),
-        ("alter.movd.world=worlds/flat.toml", "there is no alteration `movd`", "did you mean `moved`"),
-        ("alter.moved.wrld=x", "unknown key `alter.moved.wrld`", "did you mean `world`"),
-        ("alter.loud.noise=0.3", "`alter.loud.noise` must be a table", "key = value"),
-        ("alter.loud.noise.loud=0.3", "unknown key `alter.loud.noise.loud`", "`actuator`"),
-        ("alter.loud.noise.sonar=0.6", "`alter.loud.noise.sonar` is 0.6, which is out of range", "between 0 and 0.5"),
-        ("alter.moved.world=other/turned.toml", "has the rooms B, A, not those of `flat`", "same order: A, B"),
+        ("transfer.movd.world=worlds/flat.toml", "there is no alteration `movd`", "did you mean `moved`"),
+        ("transfer.moved.wrld=x", "unknown key `transfer.moved.wrld`", "did you mean `world`"),
+        ("transfer.loud.noise=0.3", "`transfer.loud.noise` must be a table", "key = value"),
+        ("transfer.loud.noise.loud=0.3", "unknown key `transfer.loud.noise.loud`", "`actuator`"),
         (
-            "alter.moved.world=other/closed.toml",
+            "transfer.loud.noise.sonar=0.6",
+            "`transfer.loud.noise.sonar` is 0.6, which is out of range",
+            "between 0 and 0.5",
+        ),
+        ("transfer.moved.world=other/turned.toml", "has the rooms B, A, not those of `flat`", "same order: A, B"),
+        (
+            "transfer.moved.world=other/closed.toml",
             "`passed-door` cannot happen: the world `closed` has no doors",
             "`explore`",
         ),
-        ("alter.moved.world=other/bare.toml", "`docked` cannot happen: the world `bare` has no charger", "`recharge`"),
         (
-            "alter.moved.world=other/dark.toml",
+            "transfer.moved.world=other/bare.toml",
+            "`docked` cannot happen: the world `bare` has no charger",
+            "`recharge`",
+        ),
+        (
+            "transfer.moved.world=other/dark.toml",
             "the world `dark` has no region `light-area`, where tests of `recharge`",
             "region",
         ),
@@ -415,8 +430,8 @@ fn trees_and_worlds_that_cannot_be_are_refused() {
 
 /// The config above with roots whose tests can be held against altered worlds.
 fn strict() -> String {
-    let text = FAMILY.replace("[0, 20, 60]", "[0, 20, 60]\ntests = 'light-area'\nends = ['docked']");
-    text.replace("{ passed-door = 1 }", "{ passed-door = 1 }\nends = ['passed-door']")
+    let text = FAMILY.replace("[0, 20, 60]", "[0, 20, 60]\neval_starts = 'light-area'\ngoal = ['docked']");
+    text.replace("{ passed-door = 1 }", "{ passed-door = 1 }\ngoal = ['passed-door']")
 }
 
 #[test]
@@ -447,18 +462,30 @@ fn what_does_not_go_together_is_shown_in_the_file() {
             "not those of `turned`",
             "order: B, A",
         ),
-        ("world = 'other/easy.toml'", "", "[alter.moved]", "`alter.moved` alters nothing", "noise = {"),
-        ("[alter.moved]", "[alter.Moved]", "Moved", "`Moved` cannot be the name of an alteration", "small letters"),
+        ("world = 'other/easy.toml'", "", "[transfer.moved]", "`transfer.moved` alters nothing", "noise = {"),
+        (
+            "[transfer.moved]",
+            "[transfer.Moved]",
+            "Moved",
+            "`Moved` cannot be the name of an alteration",
+            "small letters",
+        ),
         ("'other/easy.toml'", "'other/none.toml'", "none", "cannot read the world file", "looked for at"),
-        ("'other/easy.toml'", "3", "world = 3", "`alter.moved.world` must be a string", "quotes"),
+        ("'other/easy.toml'", "3", "world = 3", "`transfer.moved.world` must be a string", "quotes"),
         (
             "{ actuator = 0.16, kind",
             "{ acuator = 0.16, kind",
             "acuator",
-            "unknown key `alter.loud.noise.acuator`",
+            "unknown key `transfer.loud.noise.acuator`",
             "actuator",
         ),
-        ("[alter.moved]", "[alter]\nmoved = 3\n[alter.x]", "moved = 3", "`alter.moved` must be a table", "[header]"),
+        (
+            "[transfer.moved]",
+            "[transfer]\nmoved = 3\n[transfer.x]",
+            "moved = 3",
+            "`transfer.moved` must be a table",
+            "[header]",
+        ),
     ] {
         let text = strict();
         assert!(text.contains(from), "{from}");
@@ -481,9 +508,9 @@ fn thresholds_that_nothing_teaches_and_mirrors_that_show_something_else_are_refu
     let learned = "'learned'";
     // What is replaced, by what, words of the line that is shown, of the message and of the hint.
     let cases: [(Edits<'_>, &str, &str, &str); 6] = [
-        (&[("ends = ['beside-right', 'passed-door']", "ends = []")], learned, "`right` has no goal", "a number"),
+        (&[("goal = ['beside-right', 'passed-door']", "goal = []")], learned, "`right` has no goal", "a number"),
         (&[("trials = 66", "trials = 0")], learned, "`right` has no trials", "a number"),
-        (&[("trials = 66", "planned = true")], learned, "`right` is planned", "a number"),
+        (&[("trials = 66", "oracle = true")], learned, "`right` is planned", "a number"),
         (
             &[("applicable = { right =", "applicable = { left ="), ("['dock', 'right']", "['dock', 'left']")],
             learned,
@@ -520,11 +547,11 @@ fn thresholds_that_nothing_teaches_and_mirrors_that_show_something_else_are_refu
         assert!(error.message().contains(message), "{error}");
     }
     let fine = ["skill.dock.learning.mirror_replays=true", "skill.dock.children=['turn-60', 'move+12', 'turn+60']"];
-    assert!(skill(&relatives(&fine), "full", "dock").learning.mirror_replays);
+    assert!(skill(&relatives(&fine), "full", "dock").params.mirror_replays == 1);
     // Where nobody is paid for one side only, and no end is on one side only, a mirror does no harm.
-    let even = ["skill.right.reward={ beside-right = 3, beside-left = 3 }", "skill.right.ends=['passed-door']"];
+    let even = ["skill.right.reward={ beside-right = 3, beside-left = 3 }", "skill.right.goal=['passed-door']"];
     assert!(family(FAMILY, &[even.as_slice(), &["skill.right.learning.mirror_replays=true"]].concat()).0.is_ok());
-    let uneven = [even[0], "skill.right.ends=['beside-left']", "skill.right.learning.mirror_replays=true"];
+    let uneven = [even[0], "skill.right.goal=['beside-left']", "skill.right.learning.mirror_replays=true"];
     let error = family(FAMILY, &uneven).0.expect_err("an end on one side");
     assert!(error.message().contains("`beside-right` than in `beside-left`"), "{error}");
 }

@@ -13,16 +13,16 @@ fn remember(s: u32) {
     let across = (looking(0u) + looking(2u)) * 0.007874016f - 1.0f;
     let along = (looking(1u) + looking(3u)) * 0.007874016f - 1.0f;
     // The first reading stands for the past that there is not.
-    let past = select(params[s].range_mean, 0.0f, agent.step == 0u);
+    let past = select(params[s].range_decay, 0.0f, agent.step == 0u);
     agent.east_west = flush(past * agent.east_west + (1.0f - past) * across);
     agent.north_south = flush(past * agent.north_south + (1.0f - past) * along);
     let lit = (record[6] & 0x00ffffffu) != 0u;
-    agent.light = select(flush(agent.light * params[s].light_trace), 1.0f, lit);
+    agent.light = select(flush(agent.light * params[s].light_decay), 1.0f, lit);
     let passed = (agent.events & PASSED_DOOR) != 0u;
     let turn = sin_cos(bitcast<f32>(record[7]));
-    agent.door = select(flush(agent.door * params[s].door_trace), 1.0f, passed);
-    agent.door_cosine = select(flush(agent.door_cosine * params[s].door_trace), turn.y, passed);
-    agent.door_sine = select(flush(agent.door_sine * params[s].door_trace), turn.x, passed);
+    agent.door = select(flush(agent.door * params[s].door_decay), 1.0f, passed);
+    agent.door_cosine = select(flush(agent.door_cosine * params[s].door_decay), turn.y, passed);
+    agent.door_sine = select(flush(agent.door_sine * params[s].door_decay), turn.x, passed);
 }
 
 fn recall(lane: u32) {

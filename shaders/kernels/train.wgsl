@@ -104,7 +104,7 @@ fn conclude(lane: u32, base: u32) {
 fn teach(lane: u32, s: u32, base: u32) {
     let begun = state.replay;
     let finished = state.replay_left == 0u && state.replay_open == 0u;
-    if finished && begun >= params[s].taught_passes * params[s].lessons {
+    if finished && begun >= params[s].pretrain_epochs * params[s].lessons {
         conclude(lane, base);
     } else {
         if finished {
@@ -148,7 +148,7 @@ fn start(s: u32) {
 fn act(lane: u32, s: u32, base: u32) {
     let root = state.skill;
     let words = skills[root].record_words;
-    let slot = state.remembered % params[s].memory;
+    let slot = state.remembered % params[s].replay_capacity;
     let lesson = lessons_base + skills[root].memory_offset + slot * skills[root].lesson_stride;
     let step = agent.step;
     let key = vec2<u32>(params[s].run_seed, params[s].learner_seed);

@@ -7,9 +7,6 @@
 // A skill over skills may learn at its decisions only: between them rewards are summed with their discount, and
 // lambda mixes at decisions.
 
-const BACKUP_STEPS: u32 = 0u;
-const BACKUP_DECISIONS: u32 = 2u;
-
 fn taught_lesson(s: u32, number: u32) -> u32 {
     let skill = state.skill;
     let key = vec2<u32>(params[s].run_seed, params[s].learner_seed);
@@ -21,13 +18,13 @@ fn taught_lesson(s: u32, number: u32) -> u32 {
 
 fn recent_lesson(s: u32, word: u32) -> u32 {
     let skill = state.skill;
-    let kept = select(params[s].memory, state.remembered, state.remembered < params[s].memory);
+    let kept = select(params[s].replay_capacity, state.remembered, state.remembered < params[s].replay_capacity);
     // The host sends the negative inverse of the mean age: kernels do not divide.
-    let whole = 1.0f - exponential(params[s].age_decay * f32(kept));
-    let depth = -ln(1.0f - unit(word) * whole) * params[s].mean_age;
+    let whole = 1.0f - exponential(params[s].replay_age_decay * f32(kept));
+    let depth = -ln(1.0f - unit(word) * whole) * params[s].replay_mean_age;
     let drawn = u32(depth);
     let age = select(kept - 1u, drawn, drawn < kept);
-    let slot = (state.remembered - 1u - age) % params[s].memory;
+    let slot = (state.remembered - 1u - age) % params[s].replay_capacity;
     return skills[skill].memory_offset + slot * skills[skill].lesson_stride;
 }
 
@@ -79,13 +76,13 @@ fn bounded(aim: f32, limit: f32) -> f32 {
 fn inner_drawn(s: u32, step: u32) -> bool {
     let key = vec2<u32>(params[s].run_seed, params[s].learner_seed);
     let stream = Stream(key, state.skill, state.trial, state.replay, PURPOSE_INNER);
-    return unit(draw(stream, step).x) < params[s].inner_share;
+    return unit(draw(stream, step).x) < params[s].intra_skill_share;
 }
 
 fn aimed(s: u32, at: u32) -> f32 {
     let reward = bitcast<f32>(lesson_word(at + 9u)) * params[s].value_scale;
     let future = (1.0f - params[s].lambda) * state.next_best + params[s].lambda * state.next_return;
-    return bounded(reward + params[s].gamma * future, params[s].target_limit);
+    return bounded(reward + params[s].gamma * future, params[s].target_clip);
 }
 
 fn replay_step(lane: u32, s: u32, base: u32) {
@@ -116,11 +113,11 @@ fn replay_step(lane: u32, s: u32, base: u32) {
             state.next_return = outlook.best;
         } else {
             let child = select(done, skills[skill].mirror_child[done], mirrored);
-            let taught = params[s].taught_always == 1u && state.replay_taught == 1u;
+            let taught = params[s].taught_as_policy == 1u && state.replay_taught == 1u;
             let policy = taught || odds[child] > params[s].policy_threshold * outlook.total;
             let stretched = outlook.best + params[s].advantage_scale * (aim - outlook.best);
             let plain = params[s].advantage_scale == 1.0f;
-            let goal = select(bounded(stretched, params[s].target_limit), aim, plain);
+            let goal = select(bounded(stretched, params[s].target_clip), aim, plain);
             let delta = goal - q[child];
             // Of all children: one that is never chosen again would not be found out otherwise.
             var sound = is_number(delta);

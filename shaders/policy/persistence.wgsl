@@ -73,7 +73,7 @@ fn options(n: u32, persist: bool) -> Options {
     let achieved = (agent.events & ends) != 0u;
     let fresh = (applicable & ~before & ~own) != 0u;
     let lost = params[s].interrupt == 1u && (applicable & own) == 0u;
-    let late = params[s].decision_steps > 0u && since >= params[s].decision_steps;
+    let late = params[s].child_timeout > 0u && since >= params[s].child_timeout;
     let free = !persist || !skill || achieved || fresh || lost || late;
     // What runs on is an alternative, even where it is no longer applicable: the step is learned with it.
     let offered = select(choices | own, choices, free);

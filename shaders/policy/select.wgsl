@@ -3,8 +3,6 @@
 //
 // Sets of children are bits: bit c stands for child c.
 
-const CHOICE_LEARNED: u32 = 0u;
-const CHOICE_RANDOM: u32 = 1u;
 const NO_CHILD: u32 = 255u;
 
 var<workgroup> odds: array<f32, MAX_CHILDREN>;
@@ -57,11 +55,11 @@ fn pick(outlook: Outlook, word: u32) -> u32 {
 }
 
 fn choose(lane: u32, s: u32, children: u32, allowed: u32, inverse_temperature: f32, greedy: bool, word: u32) -> u32 {
-    let even = params[s].choice != CHOICE_LEARNED;
+    let even = params[s].policy != POLICY_LEARNED;
     let outlook = weigh(lane, children, allowed, select(inverse_temperature, 0.0f, even));
     let drawn = pick(outlook, word);
     let first = countTrailingZeros(allowed);
     let learned = select(drawn, outlook.greedy, greedy);
-    let other = select(first, drawn, params[s].choice == CHOICE_RANDOM);
+    let other = select(first, drawn, params[s].policy == POLICY_RANDOM);
     return select(learned, other, even);
 }

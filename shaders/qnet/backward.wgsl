@@ -1,9 +1,5 @@
 // One step of error back-propagation through one child's net (paper, section I, step 2).
 
-const OPTIMISER_SGD: u32 = 0u;
-const OPTIMISER_ADAM: u32 = 1u;
-const OPTIMISER_ADAM_ROWS: u32 = 2u;
-
 const CLOCK_SECOND: u32 = 16u;
 
 // What the gradient of each row of weights has in common.
@@ -85,8 +81,8 @@ fn paces(
 }
 
 fn learning_rate(s: u32, trial: u32) -> f32 {
-    let risen = select(params[s].rate_trials, trial, trial < params[s].rate_trials);
-    return params[s].rate * (1.0f - params[s].rate_fall * f32(risen));
+    let risen = select(params[s].learning_rate_trials, trial, trial < params[s].learning_rate_trials);
+    return params[s].learning_rate * (1.0f - params[s].learning_rate_fall * f32(risen));
 }
 
 fn learn(

@@ -210,7 +210,7 @@ impl Nets {
             let child = (record[8] & 0xff) as usize;
             let future = (1.0 - params.lambda) * next_best + params.lambda * next_return;
             let aim = f32::from_bits(record[9]) * params.value_scale + params.gamma * future;
-            let goal = aim.max(-params.target_limit).min(params.target_limit);
+            let goal = aim.max(-params.target_clip).min(params.target_clip);
             self.learn(child, &x, &hidden[child], q[child], goal - q[child], params);
             (next_best, next_return) = (best, goal);
         }
@@ -232,14 +232,14 @@ impl Nets {
         let error = delta * (1.0 - value * value);
         if params.optimiser == OPTIMISER_SGD {
             net.update(x, hidden, error, |weight, velocity, _, slope| {
-                *velocity = flush(params.beta1 * *velocity + params.rate * slope);
+                *velocity = flush(params.beta1 * *velocity + params.learning_rate * slope);
                 *weight += *velocity;
             });
             return;
         }
         net.first = flush(net.first * params.beta1);
         net.second = flush(net.second * params.beta2);
-        let rate = params.rate * square_root(1.0 - net.second) * reciprocal(1.0 - net.first);
+        let rate = params.learning_rate * square_root(1.0 - net.second) * reciprocal(1.0 - net.first);
         if params.optimiser == OPTIMISER_ADAM_ROWS {
             net.update_rows(x, hidden, error, rate, params);
             return;

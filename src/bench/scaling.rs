@@ -51,15 +51,15 @@ pub fn scaling(counts: &[u32], samples: u32, command: &str, note: &mut dyn FnMut
     let started = humantime::format_rfc3339_seconds(SystemTime::now()).to_string();
     let set = [
         "arms=[\"taught-adam\"]",
-        "teacher.bank=16",
-        "teacher.episodes=1",
+        "teacher.lessons=16",
+        "teacher.eval_episodes=1",
         "evaluate.at=[0]",
         "evaluate.episodes=2",
         // Some milliseconds each: whole learners take seconds, of which making their memory is nothing.
         "skill.dock.trials=16",
-        "learning.taught_passes=1",
+        "learning.pretrain_epochs=1",
         "learning.replays=4",
-        "learning.memory=4",
+        "learning.replay_capacity=4",
     ];
     let plan = workload::plan(DOCKING, &set, SEEDS)?;
     let group = groups(&plan)?.swap_remove(0);

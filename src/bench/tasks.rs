@@ -9,7 +9,7 @@ use super::replay::{Drill, Nets};
 use super::simulate::Walk;
 use super::workload::{self, DOCKING};
 use crate::backend::{Cohort, Test};
-use crate::config::plan::{Optimiser, Plan};
+use crate::config::plan::Plan;
 use crate::layout::HyperParams;
 use crate::math::rng::BATCH;
 use crate::qnet::backward::{OPTIMISER_ADAM_ROWS, OPTIMISER_SGD};
@@ -162,10 +162,10 @@ impl Replay {
         let hidden = format!("learning.hidden={hidden}");
         let optimiser = format!("arm.{arm}.learning.optimiser=\"{optimiser}\"");
         let arms = format!("arms=[\"{arm}\"]");
-        let passes = format!("arm.{arm}.learning.taught_passes={}", size.passes);
+        let passes = format!("arm.{arm}.learning.pretrain_epochs={}", size.passes);
         let plan = workload::plan(
             DOCKING,
-            &[&arms, &passes, &optimiser, &hidden, "teacher.episodes=1", "skill.dock.trials=0"],
+            &[&arms, &passes, &optimiser, &hidden, "teacher.eval_episodes=1", "skill.dock.trials=0"],
             size.learners,
         )?;
         Ok(Self { name, drill: Drill::new(&plan)?, passes: size.passes })
@@ -235,7 +235,7 @@ impl Hierarchy {
     /// # Errors
     /// Where the built-in config cannot be read or its teacher fails.
     pub fn new(config: &str, set: &[&str], learners: u32) -> Result<Self, BenchError> {
-        let set = [&["arms=[\"hierarchical\"]", "teacher.episodes=1"], set].concat();
+        let set = [&["arms=[\"hierarchical\"]", "teacher.eval_episodes=1"], set].concat();
         let plan = workload::plan(config, &set, learners)?;
         let group = groups(&plan)?.swap_remove(0);
         Ok(Self { plan, group })
@@ -326,12 +326,12 @@ impl Task for Learners<'_> {
 
     fn about(&self) -> String {
         let skills = &self.hierarchy.plan.arms[0].skills;
-        let trials: u32 = skills.iter().map(|skill| skill.trials).sum();
-        let learning = &skills[skills.len() - 1].learning;
+        let trials: u32 = skills.iter().map(|skill| skill.params.trials).sum();
+        let learning = &skills[skills.len() - 1].params;
         let rule = match learning.optimiser {
-            Optimiser::Sgd { .. } => "gradient descent",
-            Optimiser::Adam { rows: false, .. } => "Adam",
-            Optimiser::Adam { rows: true, .. } => "Adam with one second moment a row",
+            OPTIMISER_SGD => "gradient descent",
+            OPTIMISER_ADAM_ROWS => "Adam with one second moment a row",
+            _ => "Adam",
         };
         format!(
             "one learner from its first lesson to its last test: {} skills, {trials} trials, {} hidden units, {rule}",

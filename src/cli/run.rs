@@ -25,7 +25,7 @@ use std::time::{Duration, Instant, SystemTime};
     "  skilltree run configs/quick.toml\n",
     "  skilltree run configs/docking.toml --seeds 0..256 --out runs/docking-256\n",
     "  skilltree run configs/docking.toml --set 'arms=[\"taught-adam\"]'\n",
-    "  skilltree run configs/docking.toml --set learning.rate=0.01 --out runs/fast\n",
+    "  skilltree run configs/docking.toml --set learning.learning_rate=0.01 --out runs/fast\n",
     "  skilltree run configs/thresholds.toml --dry-run\n",
     "  skilltree run configs/sweep.toml --arm taught-adam --point 3 --seeds 1 --out runs/one\n\n",
     "No choice of backend, threads, cohort, iterations or checkpoints changes a byte of the results. A run can be stopped at ",
@@ -45,7 +45,7 @@ pub(super) struct Arguments {
     /// Runs this point of the sweep only, counted from 0 as in the tables; may be given several times.
     #[arg(long, value_name = "N")]
     point: Vec<u32>,
-    /// Sets a key of the config, such as `learning.rate=0.01`; may be given several times.
+    /// Sets a key of the config, such as `learning.learning_rate=0.01`; may be given several times.
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
     #[command(flatten)]
@@ -142,7 +142,7 @@ fn is_new(out: &Path) -> bool {
 
 /// Trials of all learners of a plan together.
 fn trials(plan: &Plan) -> u64 {
-    let trials: u64 = plan.arms.iter().flat_map(|arm| &arm.skills).map(|skill| u64::from(skill.trials)).sum();
+    let trials: u64 = plan.arms.iter().flat_map(|arm| &arm.skills).map(|skill| u64::from(skill.params.trials)).sum();
     trials * plan.seeds.len() as u64
 }
 

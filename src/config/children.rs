@@ -1,7 +1,7 @@
 //! What a skill chooses among, and how.
 
 use super::keys;
-use super::plan::{Action, Child, Choice, Persistence, Skill, Threshold};
+use super::plan::{Action, Child, Skill, Threshold};
 use crate::layout::MAX_CHILDREN;
 use crate::toml::document::Value;
 use crate::toml::error::{ConfigError, suggest};
@@ -58,11 +58,11 @@ pub(super) fn learnable(item: &Item<'_>, root: bool, own: &Skill, skills: &[Skil
             format!("`{}` is not the root", own.name)
         } else if child.mirror.is_some() {
             format!("`{}` is a mirror image", child.name)
-        } else if child.planned {
-            format!("`{}` is planned", child.name)
-        } else if child.trials == 0 {
+        } else if child.oracle {
+            format!("`{}` is an oracle", child.name)
+        } else if child.params.trials == 0 {
             format!("`{}` has no trials", child.name)
-        } else if child.ends == 0 {
+        } else if child.goal == 0 {
             format!("`{}` has no goal", child.name)
         } else {
             continue;
@@ -93,31 +93,15 @@ fn threshold(item: &Item<'_>) -> Result<Threshold, ConfigError> {
     }
 }
 
-/// Reads how a child is chosen.
-pub(super) fn choice(section: &Section<'_>) -> Result<Choice, ConfigError> {
-    Ok(match section.choice(&keys::SKILL_CHOICE)? {
-        0 => Choice::Learned,
-        1 => Choice::Random,
-        _ => Choice::Ordered,
-    })
-}
-
-/// Reads how a skill keeps to the chosen child.
-pub(super) fn persistence(section: &Section<'_>) -> Result<Persistence, ConfigError> {
+/// Reads whether a skill keeps to the chosen child, in training and in tests.
+pub(super) fn persistence(section: &Section<'_>) -> Result<(bool, bool), ConfigError> {
     let item = section.required(&keys::SKILL_PERSISTENCE, "true")?;
-    let (training, tests) = match &item.node.value {
-        Value::Flag(flag) => (*flag, *flag),
-        Value::Text(text) if text == "training" => (true, false),
+    match &item.node.value {
+        Value::Flag(flag) => Ok((*flag, *flag)),
+        Value::Text(text) if text == "training" => Ok((true, false)),
         _ => {
             let message = format!("`{}` must be true, false or \"training\"", item.name);
-            return Err(item.error(message, "\"training\" keeps to a child in training trials, but not in tests"));
+            Err(item.error(message, "\"training\" keeps to a child in training trials, but not in tests"))
         }
-    };
-    Ok(Persistence {
-        training,
-        tests,
-        applicability: section.flag(&keys::SKILL_APPLICABILITY)?,
-        interrupt: section.flag(&keys::SKILL_INTERRUPT)?,
-        decision_steps: section.whole(&keys::SKILL_DECISION_STEPS)?,
-    })
+    }
 }

@@ -5,10 +5,11 @@
 //! arm's: what names the skill is more specific.
 
 use super::arms::Arms;
-use super::keys::{self, Key};
+use super::keys::{self, KeyRow};
 use super::plan::{Evaluate, Plan};
 use super::worlds::Worlds;
-use super::{seeds, set, sweep, transfer};
+use super::{renamed, seeds, set, sweep, transfer};
+use crate::layout::params::MAX_TRIALS;
 use crate::toml::document::{Node, Origin, SWEEP, Source, Value};
 use crate::toml::error::ConfigError;
 use crate::toml::printer;
@@ -19,8 +20,8 @@ use std::sync::Arc;
 /// What the command line changes in a config.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Overrides {
-    /// `key=value` of each `--set`, in order: `learning.rate=0.01`, `skill.dock.trials=20`,
-    /// `arm.taught-sgd.learning.rate=0.1`. A later one wins. One on a base key wins over the file's base key, but an
+    /// `key=value` of each `--set`, in order: `learning.learning_rate=0.01`, `skill.dock.trials=20`,
+    /// `arm.taught-sgd.learning.learning_rate=0.1`. A later one wins. One on a base key wins over the file's base key, but an
     /// arm's own override of that key, being more specific, still holds in that arm.
     pub set: Vec<String>,
     /// The value of `--seeds`, which wins over the file and over `--set`.
@@ -67,8 +68,9 @@ fn typed(value: Value, argument: String) -> Node {
 pub fn load(path: &Path, overrides: &Overrides) -> Result<Plan, ConfigError> {
     let mut tree = read(path)?;
     overrides.apply(&mut tree)?;
+    renamed::refuse(&tree)?;
     let mut own = tree.remove("arm").map(|entry| entry.node);
-    let mut altered = tree.remove("alter").map(|entry| entry.node);
+    let mut transferred = tree.remove("transfer").map(|entry| entry.node);
     let mut swept = tree.remove(SWEEP).map(|entry| entry.node);
     let mut base = defaults(&tree)?;
     base.merge(tree);
@@ -82,13 +84,13 @@ pub fn load(path: &Path, overrides: &Overrides) -> Result<Plan, ConfigError> {
     worlds.place(&root.required(keys::WORLD.name(), "\"worlds/office.toml\"")?)?;
     let evaluate = evaluate(&root)?;
     let section = Section(root);
-    let run_seed = section.whole(&keys::SEED)?;
+    let run_seed = section.word(&keys::SEED)?;
     let sweep = sweep::read(swept.as_ref(), &base, run_seed)?;
     let chosen = section.0.optional(keys::ARMS.name());
-    let arms = Arms { base: &base, own: own.as_ref(), tested_at: &evaluate.at };
+    let arms = Arms { base: &base, own: own.as_ref(), eval_at: &evaluate.at };
     let arms = arms.read(&section.0, chosen.as_ref(), sweep.as_ref(), &mut worlds)?;
-    let alterations = match &altered {
-        Some(altered) => transfer::read(altered, &base, arms.all(), &mut worlds)?,
+    let alterations = match &transferred {
+        Some(transferred) => transfer::read(transferred, &base, arms.all(), &mut worlds)?,
         None => Vec::new(),
     };
     let title = section.required(&keys::TITLE, "\"...\"")?.text()?.to_owned();
@@ -96,17 +98,16 @@ pub fn load(path: &Path, overrides: &Overrides) -> Result<Plan, ConfigError> {
     section.0.finish()?;
 
     let sweep = sweep.map(|sweep| sweep.plan(&mut worlds)).transpose()?;
-    for group in own.iter_mut().chain(&mut altered) {
+    for group in own.iter_mut().chain(&mut transferred) {
         worlds.rename(group)?;
     }
     if let Some(swept) = &mut swept {
         sweep::rename(swept, &mut worlds)?;
     }
-    let source = path.to_owned();
     let worlds = worlds.placed;
-    let resolved = resolve(base, (&name, &worlds[0].file), [(SWEEP, swept), ("arm", own), ("alter", altered)]);
+    let resolved = resolve(base, (&name, &worlds[0].file), [(SWEEP, swept), ("arm", own), ("transfer", transferred)]);
     let arms = arms.run;
-    Ok(Plan { name, source, title, run_seed, seeds, worlds, arms, sweep, alterations, evaluate, resolved })
+    Ok(Plan { name, title, run_seed, seeds, worlds, arms, sweep, alterations, evaluate, resolved })
 }
 
 /// A config's tree, laid over that of the config that it extends.
@@ -140,7 +141,7 @@ fn defaults(tree: &Node) -> Result<Node, ConfigError> {
     let source = Arc::new(Source::Default("the whole config"));
     let mut out = Node::empty(Origin { source, span: 0..0 });
     let skills = set::names(tree, "skill");
-    for key in keys::ALL {
+    for key in keys::all() {
         let Some(text) = key.default else { continue };
         let parts: Vec<&str> = key.path.split('.').collect();
         match parts.as_slice() {
@@ -155,7 +156,7 @@ fn defaults(tree: &Node) -> Result<Node, ConfigError> {
     Ok(out)
 }
 
-fn default(key: &Key, text: &str, path: &[&str]) -> Result<Node, ConfigError> {
+fn default(key: &KeyRow, text: &str, path: &[&str]) -> Result<Node, ConfigError> {
     let source = Arc::new(Source::Default(key.path));
     let origin = Origin { source: Arc::clone(&source), span: 0..0 };
     // A test reads every default; a broken one is still reported and not a panic.
@@ -171,8 +172,8 @@ fn default(key: &Key, text: &str, path: &[&str]) -> Result<Node, ConfigError> {
 
 fn evaluate(root: &Table<'_>) -> Result<Evaluate, ConfigError> {
     let section = Section(root.required("evaluate", "{}")?.table()?);
-    let at = section.required(&keys::EVALUATE_AT, "[0, 100]")?.ascending(keys::MANY)?;
-    let evaluate = Evaluate { at, episodes: section.whole(&keys::EVALUATE_EPISODES)? };
+    let at = section.required(&keys::EVALUATE_AT, "[0, 100]")?.ascending(MAX_TRIALS)?;
+    let evaluate = Evaluate { at, episodes: section.word(&keys::EVALUATE_EPISODES)? };
     section.0.finish()?;
     Ok(evaluate)
 }

@@ -5,9 +5,9 @@ use crate::toml::error::{ConfigError, Place, suggest};
 use crate::toml::reader::is_name;
 use std::sync::Arc;
 
-const SHAPE: &str = "write --set key=value, such as --set learning.rate=0.01";
+const SHAPE: &str = "write --set key=value, such as --set learning.learning_rate=0.01";
 
-/// Lays one `--set` over the tree. It may not invent skills, arms or alterations.
+/// Lays one `--set` over the tree. It may not invent skills, arms or transfers.
 pub(super) fn apply(tree: &mut Node, argument: &str) -> Result<(), ConfigError> {
     let shown = format!("--set {argument}");
     let wrong = |message: &str, hint: &str| ConfigError::new(Place::Argument(shown.clone()), message, hint);
@@ -41,21 +41,20 @@ fn read(value: &str, source: &Arc<Source>) -> Option<Result<Node, ConfigError>> 
     Node::parse_value(value, source).or_else(word)
 }
 
-/// Skills, arms and alterations that a `--set` path names must be in the file.
+/// Skills, arms and transfers that a `--set` path names must be in the file.
 fn known(tree: &Node, keys: &[&str], wrong: &dyn Fn(&str, &str) -> ConfigError) -> Result<(), ConfigError> {
     let check = |group: &str, name: &str| {
         let names = names(tree, group);
         if names.contains(&name) {
             return Ok(());
         }
-        let what = if group == "alter" { "alteration" } else { group };
-        Err(wrong(&format!("there is no {what} `{name}`"), &suggest(name, &format!("{what}s"), &names)))
+        Err(wrong(&format!("there is no {group} `{name}`"), &suggest(name, &format!("{group}s"), &names)))
     };
     match keys {
         ["skill", skill, ..] | ["sweep", "skill", skill, ..] => check("skill", skill),
         ["arm", arm, "skill", skill, ..] => check("arm", arm).and_then(|()| check("skill", skill)),
         ["arm", arm, ..] => check("arm", arm),
-        ["alter", alteration, ..] => check("alter", alteration),
+        ["transfer", transfer, ..] => check("transfer", transfer),
         _ => Ok(()),
     }
 }

@@ -9,11 +9,11 @@ use crate::toml::reader::{Item, Section};
 pub(super) fn read(item: &Item<'_>) -> Result<Teacher, ConfigError> {
     let section = Section(item.table()?);
     let teacher = Teacher {
-        bank: section.whole(&keys::TEACHER_BANK)?,
+        lessons: section.word(&keys::TEACHER_LESSONS)?,
         discount: section.number(&keys::TEACHER_DISCOUNT)?,
         backward_cost: section.number(&keys::TEACHER_BACKWARD_COST)?,
         collision_cost: section.number(&keys::TEACHER_COLLISION_COST)?,
-        episodes: section.whole(&keys::TEACHER_EPISODES)?,
+        eval_episodes: section.word(&keys::TEACHER_EVAL_EPISODES)?,
     };
     section.0.finish()?;
     Ok(teacher)

@@ -9,7 +9,7 @@ use crate::toml::error::ConfigError;
 use crate::toml::reader::Item;
 use crate::world::World;
 
-/// Reads the table `alter`. Every arm's root must be able to do its test in each of its worlds.
+/// Reads the table `transfer`. Every arm's root must be able to do its test in each of its worlds.
 pub(super) fn read<'a>(
     altered: &Node,
     base: &Node,
@@ -17,10 +17,10 @@ pub(super) fn read<'a>(
     worlds: &mut Worlds<'_>,
 ) -> Result<Vec<Alteration>, ConfigError> {
     let mut alterations = Vec::new();
-    for (entry, item) in (Item { name: "alter".to_owned(), node: altered }).table()?.all() {
+    for (entry, item) in (Item { name: "transfer".to_owned(), node: altered }).table()?.all() {
         small_name(entry, "an alteration")?;
         let table = item.table()?;
-        let (world, noise) = (table.optional(keys::ALTER_WORLD.name()), table.optional(keys::ALTER_NOISE.name()));
+        let (world, noise) = (table.optional(keys::TRANSFER_WORLD.name()), table.optional(keys::TRANSFER_NOISE.name()));
         table.finish()?;
         let place = match (&world, &noise) {
             (Some(world), _) => world.origin(),
@@ -67,16 +67,16 @@ fn check_rooms(world: &World, usual: &World, place: &Origin) -> Result<(), Confi
 fn check_root(ground: Ground<'_>, arm: &Arm, place: &Origin) -> Result<(), ConfigError> {
     let Some(root) = arm.skills.last() else { return Ok(()) };
     let world = ground.world;
-    let problem = match ground.region_is_empty(&root.tests) {
-        None => Some(format!("the world `{}` has no region `{}`", world.name, root.tests)),
-        Some(true) => Some(format!("in the world `{}` the robot fits nowhere in `{}`", world.name, root.tests)),
+    let problem = match ground.region_is_empty(&root.eval_starts) {
+        None => Some(format!("the world `{}` has no region `{}`", world.name, root.eval_starts)),
+        Some(true) => Some(format!("in the world `{}` the robot fits nowhere in `{}`", world.name, root.eval_starts)),
         Some(false) => None,
     };
     if let Some(problem) = problem {
         let hint = "give the altered world this region, or test in another one";
         return Err(place.error(format!("{problem}, where tests of `{}` start", root.name), hint));
     }
-    for event in Event::ALL.into_iter().filter(|event| root.ends & event.bit() != 0) {
+    for event in Event::ALL.into_iter().filter(|event| root.goal & event.bit() != 0) {
         if let Some(lacking) = world.lacks(event.needs()).map(|part| part.name()) {
             let message = format!("`{}` cannot happen: the world `{}` has no {lacking}", event.name(), world.name);
             return Err(place.error(message, format!("add {lacking} to it: tests of `{}` end with this", root.name)));

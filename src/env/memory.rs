@@ -23,16 +23,16 @@ pub fn remember(agent: &mut Agent, scratch: &Scratch, params: &HyperParams) {
     let across = (looking(scratch, 0) + looking(scratch, 2)) * 0.007_874_016_f32 - 1.0;
     let along = (looking(scratch, 1) + looking(scratch, 3)) * 0.007_874_016_f32 - 1.0;
     // The first reading stands for the past that there is not.
-    let past = if agent.step == 0 { 0.0 } else { params.range_mean };
+    let past = if agent.step == 0 { 0.0 } else { params.range_decay };
     agent.east_west = flush(past * agent.east_west + (1.0 - past) * across);
     agent.north_south = flush(past * agent.north_south + (1.0 - past) * along);
     let lit = (scratch.record[6] & 0x00ff_ffff) != 0;
-    agent.light = if lit { 1.0 } else { flush(agent.light * params.light_trace) };
+    agent.light = if lit { 1.0 } else { flush(agent.light * params.light_decay) };
     let passed = (agent.events & PASSED_DOOR) != 0;
     let (sine, cosine) = sin_cos(f32::from_bits(scratch.record[7]));
-    agent.door = if passed { 1.0 } else { flush(agent.door * params.door_trace) };
-    agent.door_cosine = if passed { cosine } else { flush(agent.door_cosine * params.door_trace) };
-    agent.door_sine = if passed { sine } else { flush(agent.door_sine * params.door_trace) };
+    agent.door = if passed { 1.0 } else { flush(agent.door * params.door_decay) };
+    agent.door_cosine = if passed { cosine } else { flush(agent.door_cosine * params.door_decay) };
+    agent.door_sine = if passed { sine } else { flush(agent.door_sine * params.door_decay) };
 }
 
 /// Writes the memories into the record.

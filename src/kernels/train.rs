@@ -39,7 +39,7 @@ fn teach(learner: &mut Learner<'_>, scratch: &mut Scratch, base: u32) {
     let params = &learner.params[learner.state.skill as usize];
     let begun = learner.state.replay;
     let finished = learner.state.replay_left == 0 && learner.state.replay_open == 0;
-    if finished && begun >= params.taught_passes * params.lessons {
+    if finished && begun >= params.pretrain_epochs * params.lessons {
         conclude(learner, base);
     } else {
         if finished {
@@ -94,7 +94,7 @@ fn act(learner: &mut Learner<'_>, scratch: &mut Scratch, base: u32, lessons_base
     let params = &learner.params[root as usize];
     let skill = &learner.shared.skills[root as usize];
     let words = skill.record_words;
-    let slot = learner.state.remembered % params.memory;
+    let slot = learner.state.remembered % params.replay_capacity;
     let lesson = lessons_base + skill.memory_offset + slot * skill.lesson_stride;
     let step = learner.state.agent.step;
     let stream = Stream {

@@ -7,12 +7,14 @@
 mod macros;
 
 pub mod actions;
+pub mod choices;
 mod dispatch;
 pub mod events;
-mod params;
+pub mod params;
 pub mod phase;
 pub mod prelude;
 pub mod purpose;
+pub mod schema;
 pub mod sensors;
 mod shape;
 mod sizes;

@@ -2,7 +2,7 @@
 
 use super::phase::PHASES;
 use super::purpose::PURPOSES;
-use super::{ACTIONS, CONSTANTS, STRUCTS, actions, events, sensors};
+use super::{ACTIONS, CONSTANTS, STRUCTS, actions, choices, events, sensors};
 use std::fmt::Write;
 
 /// The text that opens every shader: constants, codes, random purposes and structs.
@@ -17,7 +17,7 @@ pub fn prelude() -> String {
     for (name, phase) in PHASES {
         let _ = writeln!(text, "const {name}: u32 = {phase}u;");
     }
-    for (name, code) in [actions::CODES, events::CODES, sensors::CODES].into_iter().flatten() {
+    for (name, code) in [actions::CODES, choices::CODES, events::CODES, sensors::CODES].into_iter().flatten() {
         let _ = writeln!(text, "const {name}: u32 = {code}u;");
     }
     let turns: Vec<String> = actions::ACTION_TURN.iter().map(|degrees| format!("{degrees:?}f")).collect();

@@ -8,6 +8,7 @@
 //! lambda mixes at decisions.
 
 use crate::env::workgroup::{Learner, Scratch};
+pub use crate::layout::choices::{BACKUP_DECISIONS, BACKUP_STEPS};
 use crate::layout::phase::PHASE_FAILED;
 use crate::layout::{LANES, LESSON_HEADER, SkillShape};
 use crate::learn::lesson::CUT;
@@ -18,11 +19,6 @@ use crate::policy::features::encode;
 use crate::policy::select::{inverse_temperature, weigh};
 use crate::qnet::backward::{backward, learning_rate};
 use crate::qnet::forward::{forward, net_of};
-
-/// Learning from every step, the best next value over all children of a free choice.
-pub const BACKUP_STEPS: u32 = 0;
-/// Learning at decisions.
-pub const BACKUP_DECISIONS: u32 = 2;
 
 /// Word of the bank at which the learner's taught lesson `number` stands: one lesson drawn from each of
 /// `lessons` equal strata of the bank.
@@ -43,18 +39,22 @@ pub fn taught_lesson(learner: &Learner<'_>, number: u32) -> u32 {
 }
 
 /// Word of the memory at which a remembered lesson stands, its age drawn from an exponential
-/// distribution of mean `mean_age`, cut off at the oldest.
+/// distribution of mean `replay_mean_age`, cut off at the oldest.
 #[inline(always)]
 pub fn recent_lesson(learner: &Learner<'_>, word: u32) -> u32 {
     let params = &learner.params[learner.state.skill as usize];
     let skill = &learner.shared.skills[learner.state.skill as usize];
-    let kept = if learner.state.remembered < params.memory { learner.state.remembered } else { params.memory };
+    let kept = if learner.state.remembered < params.replay_capacity {
+        learner.state.remembered
+    } else {
+        params.replay_capacity
+    };
     // The host sends the negative inverse of the mean age: kernels do not divide.
-    let whole = 1.0 - exponential(params.age_decay * kept as f32);
-    let depth = -ln(1.0 - unit(word) * whole) * params.mean_age;
+    let whole = 1.0 - exponential(params.replay_age_decay * kept as f32);
+    let depth = -ln(1.0 - unit(word) * whole) * params.replay_mean_age;
     let drawn = depth as u32;
     let age = if drawn < kept { drawn } else { kept - 1 };
-    let slot = (learner.state.remembered - 1 - age) % params.memory;
+    let slot = (learner.state.remembered - 1 - age) % params.replay_capacity;
     skill.memory_offset + slot * skill.lesson_stride
 }
 
@@ -121,7 +121,7 @@ pub fn inner_drawn(learner: &Learner<'_>, step: u32) -> bool {
         step: learner.state.replay,
         purpose: Purpose::Inner as u32,
     };
-    unit(draw(stream, step)[0]) < params.inner_share
+    unit(draw(stream, step)[0]) < params.intra_skill_share
 }
 
 /// What the Q-value of the step at word `at` of the lesson in replay should be, given what follows it.
@@ -130,7 +130,7 @@ pub fn aimed(learner: &Learner<'_>, at: u32) -> f32 {
     let params = &learner.params[learner.state.skill as usize];
     let reward = f32::from_bits(lesson_word(learner, at + 9)) * params.value_scale;
     let future = (1.0 - params.lambda) * learner.state.next_best + params.lambda * learner.state.next_return;
-    bounded(reward + params.gamma * future, params.target_limit)
+    bounded(reward + params.gamma * future, params.target_clip)
 }
 
 /// Learns from the next step of the lesson in replay, last step first.
@@ -164,11 +164,11 @@ pub fn replay_step(learner: &mut Learner<'_>, scratch: &mut Scratch, base: u32) 
             learner.state.next_return = outlook.best;
         } else {
             let child = if mirrored { skill.mirror_child[done as usize] } else { done };
-            let taught = params.taught_always == 1 && learner.state.replay_taught == 1;
+            let taught = params.taught_as_policy == 1 && learner.state.replay_taught == 1;
             let policy = taught || scratch.odds[child as usize] > params.policy_threshold * outlook.total;
             let stretched = outlook.best + params.advantage_scale * (aim - outlook.best);
             let plain = params.advantage_scale == 1.0;
-            let goal = if plain { aim } else { bounded(stretched, params.target_limit) };
+            let goal = if plain { aim } else { bounded(stretched, params.target_clip) };
             let delta = goal - scratch.q[child as usize];
             // Of all children: one that is never chosen again would not be found out otherwise.
             let mut sound = is_number(delta);

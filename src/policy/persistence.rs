@@ -5,13 +5,12 @@ use crate::env::events::room_of;
 use crate::env::memory::recall;
 use crate::env::motion::NO_ACTION;
 use crate::env::workgroup::Scratch;
+pub use crate::layout::params::ALWAYS;
 use crate::layout::{Agent, BASE_WORDS, HyperParams, MAX_CHILDREN, SKILL_CODE, SkillShape, VALUE_WORD, WorldUniform};
 use crate::policy::select::NO_CHILD;
 
 /// State of a skill that does not run: none of its children does.
 pub const IDLE: u32 = NO_CHILD;
-/// Threshold of a child that is always applicable.
-pub const ALWAYS: f32 = -2.0;
 
 /// What a skill may choose at one step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -92,7 +91,7 @@ pub fn options(
     let achieved = (agent.events & ends) != 0;
     let fresh = (applicable & !before & !own) != 0;
     let lost = params.interrupt == 1 && (applicable & own) == 0;
-    let late = params.decision_steps > 0 && since >= params.decision_steps;
+    let late = params.child_timeout > 0 && since >= params.child_timeout;
     let free = !persist || !skill || achieved || fresh || lost || late;
     // What runs on is an alternative, even where it is no longer applicable: the step is learned with it.
     let offered = if free { choices } else { choices | own };

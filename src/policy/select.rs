@@ -4,14 +4,11 @@
 //! Sets of children are bits: bit c stands for child c.
 
 use crate::env::workgroup::Scratch;
+pub use crate::layout::choices::{POLICY_LEARNED, POLICY_RANDOM};
 use crate::layout::{HyperParams, MAX_CHILDREN};
 use crate::math::functions::exponential;
 use crate::math::rng::unit;
 
-/// By the learned values.
-pub const CHOICE_LEARNED: u32 = 0;
-/// At random.
-pub const CHOICE_RANDOM: u32 = 1;
 /// Stands for no child.
 pub const NO_CHILD: u32 = 255;
 
@@ -83,11 +80,11 @@ pub fn choose(
     greedy: bool,
     word: u32,
 ) -> u32 {
-    let even = params.choice != CHOICE_LEARNED;
+    let even = params.policy != POLICY_LEARNED;
     let outlook = weigh(scratch, children, allowed, if even { 0.0 } else { inverse_temperature });
     let drawn = pick(scratch, outlook, word);
     let first = allowed.trailing_zeros();
     let learned = if greedy { outlook.greedy } else { drawn };
-    let other = if params.choice == CHOICE_RANDOM { drawn } else { first };
+    let other = if params.policy == POLICY_RANDOM { drawn } else { first };
     if even { other } else { learned }
 }

@@ -2,16 +2,10 @@
 
 use super::forward::{FEW, lanes_of, net_of};
 use crate::env::workgroup::Scratch;
+pub use crate::layout::choices::{OPTIMISER_ADAM, OPTIMISER_ADAM_ROWS, OPTIMISER_SGD};
 use crate::layout::{HyperParams, LANES, MAX_INPUTS, MAX_ROWS, SkillShape};
 use crate::math::functions::{flush, reciprocal, reciprocal_sqrt, square_root};
 use crate::math::reduce::{Lanes, lanes_sum};
-
-/// Gradient descent with momentum.
-pub const OPTIMISER_SGD: u32 = 0;
-/// Adam.
-pub const OPTIMISER_ADAM: u32 = 1;
-/// Adam with one second moment for each row of weights.
-pub const OPTIMISER_ADAM_ROWS: u32 = 2;
 
 /// Rows whose paces are found together: a divisor of `MAX_ROWS`.
 pub const ROW_BLOCK: usize = 16;
@@ -135,8 +129,8 @@ pub fn paces<const UNITS: usize>(
 /// Learning rate of a trial: it falls linearly over the first trials.
 #[inline(always)]
 pub fn learning_rate(params: &HyperParams, trial: u32) -> f32 {
-    let risen = if trial < params.rate_trials { trial } else { params.rate_trials };
-    params.rate * (1.0 - params.rate_fall * risen as f32)
+    let risen = if trial < params.learning_rate_trials { trial } else { params.learning_rate_trials };
+    params.learning_rate * (1.0 - params.learning_rate_fall * risen as f32)
 }
 
 /// The first numbers of a row, as a value: they are loaded, computed and stored together.

@@ -70,7 +70,7 @@ impl Demonstration {
 /// The teacher could not achieve the skill often enough.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "skill `{skill}`: the teacher achieved it in only {lessons} of {tries} demonstrations, and {wanted} lessons are wanted\nhint: widen `starts`, raise `max_steps`, or lower `teacher.bank`"
+    "skill `{skill}`: the teacher achieved it in only {lessons} of {tries} demonstrations, and {wanted} lessons are wanted\nhint: widen `starts`, raise `max_steps`, or lower `teacher.lessons`"
 )]
 pub struct TeacherError {
     /// The skill's name.

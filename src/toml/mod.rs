@@ -4,6 +4,5 @@ pub(crate) mod document;
 pub mod error;
 pub(crate) mod printer;
 pub(crate) mod reader;
-pub mod schema;
 
 pub use error::{ConfigError, Place};

@@ -1,13 +1,11 @@
 //! From a plan to the memory of a cohort: every derived size is computed here, once.
 
-use crate::config::plan::{Arm, Child, Input, Optimiser, Skill, Threshold};
+use crate::config::plan::{Arm, Child, Input, Skill};
 use crate::layout::sensors::{GROUP_SONAR, GROUP_SONAR_COMPASS};
 use crate::layout::{
-    BASE_WORDS, EVENTS, HyperParams, LANES, LESSON_HEADER, LearnerState, MAX_CHILDREN, MAX_GROUPS, MAX_INPUTS,
-    MAX_ROWS, MAX_SKILLS, MAX_STARTS, RECORD_WORDS, ROW_WORDS, SKILL_CODE, SONAR_CODES, SkillShape,
+    BASE_WORDS, HyperParams, LANES, LESSON_HEADER, LearnerState, MAX_CHILDREN, MAX_GROUPS, MAX_INPUTS, MAX_ROWS,
+    MAX_SKILLS, MAX_STARTS, RECORD_WORDS, ROW_WORDS, SKILL_CODE, SONAR_CODES, SkillShape,
 };
-use crate::policy::persistence::ALWAYS;
-use crate::qnet::backward::{OPTIMISER_ADAM, OPTIMISER_ADAM_ROWS, OPTIMISER_SGD};
 use crate::qnet::forward::net_of;
 use crate::qnet::init::init;
 use crate::world::World;
@@ -54,7 +52,7 @@ impl Shape {
             let most = |size: fn(&Skill) -> u32| siblings().map(size).max().unwrap_or(0);
             let mut plan = plan_of(skill, world, &mut shape.tables)?;
             plan.watched = watched(&arms[0].skills, number);
-            plan.lesson_stride = lesson_stride(most(|skill| skill.max_steps), plan.record_words);
+            plan.lesson_stride = lesson_stride(most(|skill| skill.params.max_steps), plan.record_words);
             plan.memory_offset = shape.lessons_stride as u32;
             match skill.mirror {
                 Some(source) => {
@@ -68,10 +66,11 @@ impl Shape {
                 }
             }
             // What is never tried is never remembered.
-            if most(|skill| skill.trials) > 0 {
-                shape.lessons_stride += most(|skill| skill.learning.memory) as usize * plan.lesson_stride as usize;
+            if most(|skill| skill.params.trials) > 0 {
+                shape.lessons_stride +=
+                    most(|skill| skill.params.replay_capacity) as usize * plan.lesson_stride as usize;
             }
-            shape.rows_stride += most(|skill| skill.trials + skill.lessons) as usize * ROW_WORDS;
+            shape.rows_stride += most(|skill| skill.params.trials + skill.params.lessons) as usize * ROW_WORDS;
             shape.skills.push(plan);
         }
         // Every net can be read as one of `MAX_ROWS` rows: the last one too.
@@ -92,7 +91,8 @@ impl Shape {
     /// A learner's params for each skill, its state before the first iteration, and its initial nets.
     pub fn learner(&self, arm: &Arm, run_seed: u32, seed: u32) -> (Vec<HyperParams>, LearnerState, Vec<f32>) {
         let mut nets = vec![0.0; self.nets_stride];
-        let params: Vec<HyperParams> = arm.skills.iter().map(|skill| params_of(skill, arm, run_seed, seed)).collect();
+        let own = |skill: &Skill| HyperParams { run_seed, learner_seed: seed, ..skill.params };
+        let params: Vec<HyperParams> = arm.skills.iter().map(own).collect();
         for (number, plan) in self.skills.iter().enumerate().filter(|(number, _)| arm.skills[*number].mirror.is_none())
         {
             init(&mut nets, plan, number as u32, &params[number]);
@@ -138,13 +138,13 @@ fn plan_of(skill: &Skill, world: &World, tables: &mut Tables) -> Result<SkillSha
     let mut plan = SkillShape::zeroed();
     plan.inputs = inputs;
     plan.children = skill.children.len() as u32;
-    (plan.nets, plan.outputs) = if skill.learning.shared_net { (1, plan.children) } else { (plan.children, 1) };
+    (plan.nets, plan.outputs) = if skill.params.shared_net == 1 { (1, plan.children) } else { (plan.children, 1) };
     plan.rows = inputs + plan.outputs + 2;
     plan.record_words = if skill.is_high() || recalls(skill) { RECORD_WORDS } else { BASE_WORDS } as u32;
     plan.mirrored = u32::from(skill.mirror.is_some());
     plan.groups = skill.inputs.len() as u32;
     plan.starts = skill.starts.len() as u32;
-    plan.ends = skill.ends;
+    plan.ends = skill.goal;
     let (mut first, mut bits) = (0, 0_u64);
     for (group, input) in skill.inputs.iter().enumerate() {
         plan.group_first[group] = first;
@@ -183,7 +183,7 @@ fn plan_of(skill: &Skill, world: &World, tables: &mut Tables) -> Result<SkillSha
         plan.start_share[number] = share;
         (plan.start_offset[number], plan.start_count[number]) = cells_of(region)?;
     }
-    (plan.tests_offset, plan.tests_count) = cells_of(&skill.tests)?;
+    (plan.tests_offset, plan.tests_count) = cells_of(&skill.eval_starts)?;
     Ok(plan)
 }
 
@@ -202,79 +202,4 @@ fn sonar_table(input: Input) -> [f32; SONAR_CODES] {
         };
         code as f32
     })
-}
-
-fn params_of(skill: &Skill, arm: &Arm, run_seed: u32, seed: u32) -> HyperParams {
-    let (learning, robot) = (&skill.learning, &arm.robot);
-    let persistence = &skill.persistence;
-    let mut threshold = [ALWAYS; MAX_CHILDREN];
-    for (value, own) in threshold.iter_mut().zip(&skill.applicable) {
-        // A learned one is always exceeded until it is known.
-        if let Some(Threshold::Fixed(fixed)) = own {
-            *value = *fixed;
-        }
-    }
-    let (optimiser, rate, beta1, beta2, epsilon) = match learning.optimiser {
-        Optimiser::Sgd { rate, momentum } => (OPTIMISER_SGD, rate, momentum, 0.0, 1.0),
-        Optimiser::Adam { rows: false, rate, beta1, beta2, epsilon } => (OPTIMISER_ADAM, rate, beta1, beta2, epsilon),
-        Optimiser::Adam { rows: true, rate, beta1, beta2, epsilon } => {
-            (OPTIMISER_ADAM_ROWS, rate, beta1, beta2, epsilon)
-        }
-    };
-    let rise = learning.inverse_temperature_end - learning.inverse_temperature_start;
-    let mut reward = [0.0; EVENTS];
-    reward.copy_from_slice(&skill.reward);
-    HyperParams {
-        run_seed,
-        learner_seed: seed,
-        noise: arm.noise.into(),
-        hidden: learning.hidden,
-        unit_share: 1.0 / learning.hidden as f32,
-        init: learning.init,
-        gamma: learning.gamma,
-        lambda: learning.lambda,
-        optimiser,
-        rate,
-        rate_fall: (1.0 - learning.rate_end_share) / learning.rate_trials as f32,
-        rate_trials: learning.rate_trials,
-        beta1,
-        beta2,
-        epsilon2: epsilon * epsilon,
-        value_scale: 1.0 / learning.reward_scale,
-        target_limit: learning.target_limit,
-        inverse_temperature_start: learning.inverse_temperature_start,
-        inverse_temperature_slope: rise / learning.inverse_temperature_trials.max(1) as f32,
-        inverse_temperature_trials: learning.inverse_temperature_trials,
-        policy_threshold: learning.policy_threshold,
-        replays: learning.replays,
-        memory: learning.memory,
-        mean_age: learning.mean_age,
-        age_decay: -1.0 / learning.mean_age,
-        taught_passes: learning.taught_passes,
-        taught_replays: learning.taught_replays,
-        taught_always: u32::from(learning.taught_always),
-        timeout_terminal: u32::from(learning.timeout_terminal),
-        mask_blocked: u32::from(learning.mask_blocked),
-        mirror_replays: u32::from(learning.mirror_replays),
-        lessons: skill.lessons,
-        trials: skill.trials,
-        max_steps: skill.max_steps,
-        choice: skill.choice as u32,
-        persist_training: u32::from(persistence.training),
-        persist_tests: u32::from(persistence.tests),
-        applicability: u32::from(persistence.applicability),
-        interrupt: u32::from(persistence.interrupt),
-        decision_steps: persistence.decision_steps,
-        child_inverse_temperature: learning.child_inverse_temperature,
-        backup: learning.backup as u32,
-        advantage_scale: learning.advantage_scale,
-        inner_share: learning.inner_share,
-        light_trace: robot.light_trace,
-        door_trace: robot.door_trace,
-        range_mean: robot.range_mean,
-        beside_near: robot.beside_near as u32,
-        beside_far: robot.beside_far as u32,
-        threshold,
-        reward,
-    }
 }

@@ -5,7 +5,7 @@ use crate::backend::Cohort;
 use crate::config::plan::{Action, Arm, Event, Plan, Skill};
 use crate::env::segments::SegmentGrid;
 use crate::env::workgroup::CohortData;
-use crate::layout::{BASE_WORDS, SkillShape};
+use crate::layout::{BASE_WORDS, HyperParams, SkillShape};
 use crate::teacher::demonstrations::{Demonstration, Teacher, TeacherError, teacher_params};
 use crate::teacher::value_iteration::{PITCH, Planner, Terms};
 use crate::train::allocate::{Shape, ShapeError};
@@ -60,22 +60,26 @@ pub fn groups(plan: &Plan) -> Result<Vec<Group>, SetupError> {
 /// Whether two arms differ in nothing but per-learner numbers that the teacher does not see.
 pub(super) fn alike(a: &Arm, b: &Arm) -> bool {
     let bare = |skill: &Skill, like: &Skill| {
-        let mut bare = Skill {
-            learning: like.learning.clone(),
-            lessons: like.lessons,
-            trials: like.trials,
-            tested_at: like.tested_at.clone(),
-            choice: like.choice,
-            persistence: like.persistence,
-            ..skill.clone()
+        let own = &skill.params;
+        let params = HyperParams {
+            noise: own.noise,
+            light_decay: own.light_decay,
+            door_decay: own.door_decay,
+            range_decay: own.range_decay,
+            beside_near: own.beside_near,
+            beside_far: own.beside_far,
+            shared_net: own.shared_net,
+            max_steps: own.max_steps,
+            reward: own.reward,
+            ..like.params
         };
-        bare.learning.shared_net = skill.learning.shared_net;
+        let mut bare = Skill { params, eval_at: like.eval_at.clone(), ..skill.clone() };
         for (own, other) in bare.applicable.iter_mut().zip(&like.applicable) {
             *own = if own.is_some() && other.is_some() { *other } else { *own };
         }
         bare
     };
-    (a.world, a.noise, a.robot, a.teacher) == (b.world, b.noise, b.robot, b.teacher)
+    (a.world, a.noise, a.teacher) == (b.world, b.noise, b.teacher)
         && a.skills.len() == b.skills.len()
         && a.skills.iter().zip(&b.skills).all(|(a, b)| *a == bare(b, a))
 }
@@ -109,7 +113,7 @@ impl Solved {
 
     /// Whether these tests are still to be made; from now on they are not.
     fn claim(&mut self, task: &Task, skill: &Skill, episodes: u32) -> bool {
-        let test = (task.clone(), skill.tests.clone(), skill.max_steps, episodes);
+        let test = (task.clone(), skill.eval_starts.clone(), skill.params.max_steps, episodes);
         let open = !self.tested.contains(&test);
         if open {
             self.tested.push(test);
@@ -127,7 +131,7 @@ impl Group {
         let mut bounds = Vec::new();
         let (params, ..) = shape.learner(first, plan.run_seed, 0);
         for (number, skill) in first.skills.iter().enumerate() {
-            let taught = members.iter().any(|arm| arm.skills[number].lessons > 0);
+            let taught = members.iter().any(|arm| arm.skills[number].params.lessons > 0);
             let task = task_of(first, skill);
             // A mirror image has nothing of its own to plan.
             if skill.mirror.is_some() {
@@ -143,14 +147,16 @@ impl Group {
                 params: &teacher_params(&params[number]),
                 number: number as u32,
             };
-            let bank = if taught { teacher.bank(skill, first.teacher.bank)? } else { Vec::new() };
+            let bank = if taught { teacher.bank(skill, first.teacher.lessons)? } else { Vec::new() };
             bounds.push(
-                solved.claim(&task, skill, first.teacher.episodes).then(|| teacher.tests(first.teacher.episodes)),
+                solved
+                    .claim(&task, skill, first.teacher.eval_episodes)
+                    .then(|| teacher.tests(first.teacher.eval_episodes)),
             );
-            let table = skill.planned.then(|| planner.table(&shared, params[number].value_scale));
+            let table = skill.oracle.then(|| planner.table(&shared, params[number].value_scale));
             let own = &mut shared.skills[number];
             own.bank_offset = shared.bank.len() as u32;
-            own.bank_lessons = if taught { first.teacher.bank } else { 0 };
+            own.bank_lessons = if taught { first.teacher.lessons } else { 0 };
             if let Some(table) = table {
                 own.planned = shared.tables.len() as u32;
                 shared.tables.extend(table);
@@ -216,7 +222,7 @@ fn lay_out(members: &[&Arm], world: &crate::world::World) -> Result<(Shape, Coho
 pub fn terms_of(arm: &Arm) -> Terms {
     Terms {
         noise: arm.noise,
-        robot: arm.robot,
+        beside: arm.skills.last().map_or((0, 0), |root| (root.params.beside_near, root.params.beside_far)),
         discount: arm.teacher.discount,
         backward_cost: arm.teacher.backward_cost,
         collision_cost: arm.teacher.collision_cost,
@@ -226,7 +232,7 @@ pub fn terms_of(arm: &Arm) -> Terms {
 
 fn task_of(arm: &Arm, skill: &Skill) -> Task {
     let terms = terms_of(arm);
-    Task { world: arm.world, terms, reward: skill.reward, ends: skill.ends, actions: skill.actions() }
+    Task { world: arm.world, terms, reward: skill.params.reward, ends: skill.goal, actions: skill.actions() }
 }
 
 /// A skill's shape as the planner drives it: over actions.

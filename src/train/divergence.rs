@@ -74,7 +74,7 @@ fn transition(arm: &Arm, cohort: &Cohort, index: usize) -> Transition {
     let child = if mirrored { skill.mirror_child[done] as usize } else { done };
     Transition {
         taught,
-        lesson: if taught { place } else { trial_in(place, learner.state.remembered, params[number].memory) },
+        lesson: if taught { place } else { trial_in(place, learner.state.remembered, params[number].replay_capacity) },
         mirrored,
         step,
         child: arm.name_of(arm.skills[number].children[child]).to_owned(),

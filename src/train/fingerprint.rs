@@ -2,7 +2,7 @@
 //!
 //! Different arms may have the same number: equality is always checked. What is left out here only costs time.
 
-use crate::config::plan::{Arm, Optimiser, Skill};
+use crate::config::plan::{Arm, Skill};
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -49,17 +49,16 @@ pub(super) fn of_stem(arm: &Arm) -> u64 {
 
 fn circumstances(arm: &Arm) -> DefaultHasher {
     let mut hasher = DefaultHasher::new();
-    let (noise, robot, teacher) = (arm.noise, arm.robot, arm.teacher);
-    (arm.world, arm.skills.len(), noise.kind as u32, teacher.bank, teacher.episodes).hash(&mut hasher);
+    let (noise, teacher) = (arm.noise, arm.teacher);
+    (arm.world, arm.skills.len(), noise.kind, teacher.lessons, teacher.eval_episodes).hash(&mut hasher);
     singles(&[noise.actuator, noise.sonar, noise.light, noise.compass], &mut hasher);
-    singles(&[robot.light_trace, robot.door_trace, robot.range_mean, robot.beside_near, robot.beside_far], &mut hasher);
     singles(&[teacher.discount, teacher.backward_cost, teacher.collision_cost], &mut hasher);
     hasher
 }
 
 fn task(skill: &Skill, hasher: &mut DefaultHasher) {
-    (&skill.name, skill.ends, skill.max_steps, skill.learning.shared_net).hash(hasher);
-    singles(&skill.reward, hasher);
+    (&skill.name, skill.goal, skill.params.max_steps, skill.params.shared_net).hash(hasher);
+    singles(&skill.params.reward, hasher);
     for (region, share) in &skill.starts {
         region.hash(hasher);
         singles(&[*share], hasher);
@@ -67,18 +66,7 @@ fn task(skill: &Skill, hasher: &mut DefaultHasher) {
 }
 
 fn numbers(skill: &Skill, hasher: &mut DefaultHasher) {
-    let learning = &skill.learning;
-    (skill.lessons, skill.trials, learning.hidden, learning.rate_trials, learning.replays, learning.memory)
-        .hash(hasher);
-    (learning.taught_passes, learning.taught_replays, learning.inverse_temperature_trials).hash(hasher);
-    let rate = match learning.optimiser {
-        Optimiser::Sgd { rate, momentum } => [rate, momentum, 0.0, 0.0],
-        Optimiser::Adam { rate, beta1, beta2, epsilon, .. } => [rate, beta1, beta2, epsilon],
-    };
-    singles(&rate, hasher);
-    singles(&[learning.gamma, learning.lambda, learning.init, learning.rate_end_share, learning.reward_scale], hasher);
-    singles(&[learning.target_limit, learning.policy_threshold, learning.mean_age, learning.advantage_scale], hasher);
-    singles(&[learning.inverse_temperature_start, learning.inverse_temperature_end, learning.inner_share], hasher);
+    bytemuck::bytes_of(&skill.params).hash(hasher);
 }
 
 /// Equal numbers are one: -0 counts as 0.

@@ -30,8 +30,7 @@ pub fn families(plan: &Plan) -> Vec<Family> {
 
 fn related(a: &Arm, b: &Arm) -> bool {
     let below = |arm: &Arm| arm.skills.len() - 1;
-    (a.world, a.noise, a.robot, a.teacher) == (b.world, b.noise, b.robot, b.teacher)
-        && a.skills[..below(a)] == b.skills[..below(b)]
+    (a.world, a.noise, a.teacher) == (b.world, b.noise, b.teacher) && a.skills[..below(a)] == b.skills[..below(b)]
 }
 
 impl Family {

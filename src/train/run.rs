@@ -137,11 +137,11 @@ fn saved(
 }
 
 fn trials_of(plan: &Plan, id: LearnerId) -> u64 {
-    plan.arms[id.arm].skills.iter().map(|skill| u64::from(skill.trials)).sum()
+    plan.arms[id.arm].skills.iter().map(|skill| u64::from(skill.params.trials)).sum()
 }
 
 fn root_trials(plan: &Plan, id: LearnerId) -> u64 {
-    plan.arms[id.arm].skills.last().map_or(0, |root| u64::from(root.trials))
+    plan.arms[id.arm].skills.last().map_or(0, |root| u64::from(root.params.trials))
 }
 
 /// A run that is going on.

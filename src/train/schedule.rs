@@ -72,7 +72,7 @@ fn cohorts(
     // Tests under alterations are numbered by the root's trials, all learners of a cohort at once.
     let trials = |arm: usize| match plan.alterations[..] {
         [] => 0,
-        _ => plan.arms[arm].skills.last().map_or(0, |root| root.trials),
+        _ => plan.arms[arm].skills.last().map_or(0, |root| root.params.trials),
     };
     let mut alike: BTreeMap<(usize, u32), Vec<LearnerId>> = BTreeMap::new();
     for arm in &family.arms {

@@ -104,11 +104,11 @@ pub fn fit(cohort: &Cohort, learner: usize, skill: usize) -> Fit {
     let params = &cohort.params[learner * cohort.skills + skill];
     let nets = &cohort.nets[learner * cohort.nets_stride..][..cohort.nets_stride];
     let lessons = &cohort.lessons[learner * cohort.lessons_stride..][..cohort.lessons_stride];
-    let kept = params.trials.min(params.memory);
+    let kept = params.trials.min(params.replay_capacity);
     let mut scratch = Scratch::default();
     let mut seen = Vec::new();
     for age in 0..kept.div_ceil(2) {
-        let slot = (params.trials - 1 - age) % params.memory;
+        let slot = (params.trials - 1 - age) % params.replay_capacity;
         let lesson = &lessons[(plan.memory_offset + slot * plan.lesson_stride) as usize..];
         let words = plan.record_words as usize;
         for record in lesson[LESSON_HEADER..].chunks(words).take(lesson[0] as usize) {

@@ -3,11 +3,11 @@
 use super::check::{self, Written};
 use super::solids::{self, holds};
 use super::{Charger, Door, Light, Pose, Rect, Room, World};
+use crate::layout::schema::Bounds;
 use crate::layout::{MAX_DOORS, MAX_ROOMS, MAX_SEGMENTS};
 use crate::toml::ConfigError;
 use crate::toml::document::Node;
 use crate::toml::reader::{Item, Table};
-use crate::toml::schema::Bounds;
 use glam::Vec2;
 use std::path::Path;
 

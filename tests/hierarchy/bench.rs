@@ -40,17 +40,17 @@ pub(crate) const TREE: &str = r#"
     at = []
     episodes = 1
     [teacher]
-    episodes = 1
+    eval_episodes = 1
     [learning]
-    init = 0.4
+    init_range = 0.4
     [skill.dock]
     inputs = ["sonar(60)", "light", "bumpers"]
     reward = { docked = 100, collision = -10 }
-    ends = ["docked"]
+    goal = ["docked"]
     [skill.door]
     inputs = ["sonar(60)", "sonar-far", "bumpers"]
     reward = { passed-door = 100, collision = -10 }
-    ends = ["passed-door"]
+    goal = ["passed-door"]
     [skill.right]
     inputs = ["sonar(30)", "bumpers"]
     reward = { beside-right = 8, collision = -10 }
@@ -61,7 +61,7 @@ pub(crate) const TREE: &str = r#"
     inputs = ["sonar-far", "bumpers", "running"]
     applicable = { dock = 0.25, door = 0.5 }
     reward = { docked = 100 }
-    ends = ["docked"]
+    goal = ["docked"]
     max_steps = 200
 "#;
 

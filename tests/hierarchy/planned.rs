@@ -17,9 +17,9 @@ use skilltree::world::Pose;
 /// The tree with all four skills planned; children in no tidy order.
 fn planned() -> (Plan, Group) {
     let set = [
-        "skill.dock.planned=true",
-        "skill.door.planned=true",
-        "skill.right.planned=true",
+        "skill.dock.oracle=true",
+        "skill.door.oracle=true",
+        "skill.right.oracle=true",
         "skill.right.children=['turn-60', 'move+12', 'turn+15']",
         "skill.door.children=['turn+60', 'turn-15', 'move+12', 'turn-60', 'turn+15']",
         "skill.door.learning.reward_scale=50.0",
@@ -89,7 +89,7 @@ fn tables_hold_the_planners_choices() {
             };
             let says = nearest.iter().map(|at| {
                 let pose = Pose { x: at.x, y: at.y, heading };
-                let value = planner.value(origin, pose) / skill.learning.reward_scale;
+                let value = planner.value(origin, pose) / skill.params.reward_scale;
                 (planner.choose(&group.shared, origin, pose), value)
             });
             let best = greatest(&found);
@@ -120,7 +120,7 @@ fn planned_skills_need_no_nets() {
     let learners = group.learners(&plan);
     let cohort = group.cohort(&plan, &learners);
     let root = cohort.skills - 1;
-    assert!(plan.arms[0].skills[..root].iter().all(|skill| skill.trials == 0 && skill.lessons == 0));
+    assert!(plan.arms[0].skills[..root].iter().all(|skill| skill.params.trials == 0 && skill.params.lessons == 0));
     let tests = |poison: bool| -> Vec<Episode> {
         let mut cohort = cohort.clone();
         let end = cohort.shared.skills[root].nets_offset as usize;

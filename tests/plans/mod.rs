@@ -37,8 +37,6 @@ fn same(a: &Plan, b: &Plan) {
 pub(crate) fn read_again(plan: &Plan) {
     let mut files = vec![("config.toml", plan.resolved.as_str())];
     files.extend(plan.worlds.iter().map(|world| (world.file.as_str(), world.text.as_str())));
-    let (again, path) = attempt_files(&files);
-    let again = again.unwrap_or_else(|error| panic!("{error}\n{}", plan.resolved));
+    let again = attempt_files(&files).0.unwrap_or_else(|error| panic!("{error}\n{}", plan.resolved));
     same(plan, &again);
-    assert_eq!(again.source, path);
 }

@@ -33,8 +33,8 @@ const EXPECTED: [Words; 4] = [
 
 /// What the learners learn from and what becomes of their nets, made by the CPU backend and checked by the reference.
 pub(super) fn replay(learners: u32) -> Result<(Vec<Tensor>, Map<String, Value>), BenchError> {
-    let passes = format!("learning.taught_passes={PASSES}");
-    let set = ["arms=[\"taught-adam\"]", "teacher.episodes=1", "skill.dock.trials=0", &passes];
+    let passes = format!("learning.pretrain_epochs={PASSES}");
+    let set = ["arms=[\"taught-adam\"]", "teacher.eval_episodes=1", "skill.dock.trials=0", &passes];
     let plan = workload::plan(DOCKING, &set, learners)?;
     let drill = Drill::new(&plan)?;
     let (skill, shared, params) = (*drill.skill(), &drill.cohort().shared, *drill.params(0));
@@ -96,11 +96,11 @@ pub(super) fn replay(learners: u32) -> Result<(Vec<Tensor>, Map<String, Value>),
         "transitions": drill.transitions(PASSES),
         "gamma": params.gamma,
         "lambda": params.lambda,
-        "rate": params.rate,
+        "rate": params.learning_rate,
         "beta1": params.beta1,
         "beta2": params.beta2,
         "epsilon2": params.epsilon2,
-        "target_limit": params.target_limit,
+        "target_clip": params.target_clip,
         "hidden": LANES,
     });
     Ok((tensors, object(numbers)))

@@ -2,8 +2,8 @@
 
 use super::{Axis, Sweep, has, lay};
 use crate::config::arms::Arms;
-use crate::config::learning::Idle;
 use crate::config::plan::{Arm, Child};
+use crate::config::unused_keys::UnusedKeys;
 use crate::config::worlds::Worlds;
 use crate::toml::document::Node;
 use crate::toml::error::{ConfigError, suggest};
@@ -25,7 +25,7 @@ impl Arms<'_> {
         mut bases: Vec<Base<'_>>,
         sweep: &Sweep<'_>,
         worlds: &mut Worlds<'_>,
-        idle: &mut Idle,
+        unused: &mut UnusedKeys,
     ) -> Result<Vec<Arm>, ConfigError> {
         for axis in &sweep.axes {
             if !bases.iter().any(|base| is_concerned(base.arm, &base.tree, axis, sweep)) {
@@ -42,7 +42,7 @@ impl Arms<'_> {
                     || seen.insert(own.iter().map(|axis| point[*axis]).collect::<Vec<_>>());
                 if new && sweep.only.binary_search(&number).is_ok() {
                     lay(tree, sweep, point);
-                    arms.push(self.arm((&arm.name, number as u32), tree, worlds, idle)?);
+                    arms.push(self.arm((&arm.name, number as u32), tree, worlds, unused)?);
                 }
             }
         }
@@ -54,10 +54,10 @@ impl Arms<'_> {
         }
         bases.sort_by_key(|base| !base.run);
         for (number, axis) in sweep.axes.iter().enumerate().filter(|(_, axis)| axis.size() > 1) {
-            if !self.changes(&mut bases, sweep, number, worlds, idle)? {
+            if !self.changes(&mut bases, sweep, number, worlds, unused)? {
                 let message = format!("`{}` changes nothing in any arm", axis.key);
                 let hint = "nothing uses it, as momentum where the optimiser is adam; or all skills have their own: name the \
-                            skill, as in skill.dock.learning.rate";
+                            skill, as in skill.dock.learning.learning_rate";
                 return Err(axis.item.error(message, hint));
             }
         }
@@ -71,7 +71,7 @@ impl Arms<'_> {
         sweep: &Sweep<'_>,
         axis: usize,
         worlds: &mut Worlds<'_>,
-        idle: &mut Idle,
+        unused: &mut UnusedKeys,
     ) -> Result<bool, ConfigError> {
         for point in &sweep.points {
             let mut other = point.clone();
@@ -79,7 +79,7 @@ impl Arms<'_> {
             for Base { tree, run, .. } in &mut *bases {
                 let mut at = |point: &[usize]| {
                     lay(tree, sweep, point);
-                    self.arm(("", 0), tree, worlds, idle)
+                    self.arm(("", 0), tree, worlds, unused)
                 };
                 match (at(point), at(&other)) {
                     (Ok(one), Ok(another)) if one != another => return Ok(true),

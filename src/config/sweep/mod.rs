@@ -6,7 +6,7 @@
 //! [sweep]
 //! learning.gamma = [0.8, 0.9, 0.95]                                      # a list, also of words, flags or worlds
 //! robot.noise.sonar = { from = 0.0, to = 0.2, steps = 5 }                # evenly spread, both ends included
-//! learning.rate = { from = 1e-4, to = 1e-2, steps = 5, scale = "log" }   # evenly in the logarithm
+//! learning.learning_rate = { from = 1e-4, to = 1e-2, steps = 5, scale = "log" }   # evenly in the logarithm
 //! skill.recharge.applicable.dock = { values = [0.1, 0.2], label = "dock threshold" }
 //! ```
 //!
@@ -63,7 +63,7 @@ pub(super) fn read<'a>(node: Option<&'a Node>, base: &Node, run_seed: u32) -> Re
     let names = Names::new(base);
     let mut axes: Vec<Axis<'a>> = Vec::new();
     for (entry, item) in section.0.all() {
-        if !keys::ALL.iter().any(|key| key.path == format!("sweep.{}", entry.key)) {
+        if !keys::all().any(|key| key.path == format!("sweep.{}", entry.key)) {
             axis::collect(entry, &item, &[], &names, &mut axes)?;
         }
     }
