@@ -3,7 +3,7 @@
 mod plans;
 
 use plans::{attempt_files, read_again, with};
-use skilltree::config::plan::{Action, Arm, Child, Event, Input, Plan};
+use skilltree::config::plan::{Action, ArmPlan, Child, Event, Input, Plan};
 use skilltree::config::{ConfigError, Overrides, Place, keys, load, parse_seeds};
 use skilltree::layout::HyperParams;
 use skilltree::layout::choices::{NOISE_GAUSSIAN, OPTIMISER_ADAM, OPTIMISER_SGD};
@@ -85,8 +85,9 @@ fn quick_is_the_papers_main_comparison() {
     let wanted: Vec<_> = whole.arms.iter().filter(|arm| ["hierarchical", "monolithic"].contains(&&*arm.name)).collect();
     assert_eq!(quick.arms.len(), wanted.len());
     for (arm, other) in quick.arms.iter().zip(wanted) {
-        let trials =
-            |arm: &Arm| arm.skills.iter().map(|skill| (skill.name.clone(), skill.params.trials)).collect::<Vec<_>>();
+        let trials = |arm: &ArmPlan| {
+            arm.skills.iter().map(|skill| (skill.name.clone(), skill.params.trials)).collect::<Vec<_>>()
+        };
         assert_eq!((&arm.name, trials(arm)), (&other.name, trials(other)));
         let (root, same) = (arm.skills.last().expect("a root"), other.skills.last().expect("a root"));
         assert_eq!((&root.params, &root.applicable), (&same.params, &same.applicable));

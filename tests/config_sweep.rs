@@ -3,7 +3,7 @@
 mod plans;
 
 use plans::{attempt_files, read_again, with};
-use skilltree::config::plan::{Arm, AxisValue, Design, Plan, Scale, Threshold};
+use skilltree::config::plan::{ArmPlan, AxisValue, Design, Plan, Scale, Threshold};
 use skilltree::config::{ConfigError, Overrides, Place, load};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -22,7 +22,7 @@ fn refused(config: &str, overrides: &Overrides) -> ConfigError {
 }
 
 /// Something of each arm, in order.
-fn each<T>(plan: &Plan, of: impl Fn(&Arm) -> T) -> Vec<T> {
+fn each<T>(plan: &Plan, of: impl Fn(&ArmPlan) -> T) -> Vec<T> {
     plan.arms.iter().map(of).collect()
 }
 
@@ -126,10 +126,10 @@ fn any_key_of_an_arm_may_be_an_axis() {
         assert_eq!(swept.arms.len(), values.len(), "{axis}");
         for (arm, value) in swept.arms.iter().zip(&quoted) {
             let alone = self::plan("lin1993.toml", &["arms=['hierarchical']", &single(key, value)]);
-            let world = |plan: &Plan, arm: &Arm| plan.worlds[arm.world].world.clone();
+            let world = |plan: &Plan, arm: &ArmPlan| plan.worlds[arm.world].world.clone();
             assert_eq!(world(&swept, arm), world(&alone, &alone.arms[0]), "{key} = {value}");
-            let bare = Arm { point: 0, world: 0, ..arm.clone() };
-            assert_eq!(bare, Arm { world: 0, ..alone.arms[0].clone() }, "{key} = {value}");
+            let bare = ArmPlan { point: 0, world: 0, ..arm.clone() };
+            assert_eq!(bare, ArmPlan { world: 0, ..alone.arms[0].clone() }, "{key} = {value}");
         }
         read_again(&swept);
     }

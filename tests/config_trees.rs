@@ -3,7 +3,7 @@
 mod plans;
 
 use plans::{attempt_files, read_again, with};
-use skilltree::config::plan::{Action, Alteration, Arm, Child, Event, Input, Noise, Plan, Skill, Threshold};
+use skilltree::config::plan::{Action, Alteration, ArmPlan, Child, Event, Input, Noise, Plan, SkillPlan, Threshold};
 use skilltree::config::{ConfigError, Overrides, Place, load};
 use skilltree::layout::HyperParams;
 use skilltree::layout::choices::{
@@ -98,15 +98,15 @@ fn relatives(set: &[&str]) -> Plan {
     family(FAMILY, set).0.unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn arm<'a>(plan: &'a Plan, name: &str) -> &'a Arm {
+fn arm<'a>(plan: &'a Plan, name: &str) -> &'a ArmPlan {
     plan.arms.iter().find(|arm| arm.name == name).expect("the arm")
 }
 
-fn names(arm: &Arm) -> Vec<&str> {
+fn names(arm: &ArmPlan) -> Vec<&str> {
     arm.skills.iter().map(|skill| skill.name.as_str()).collect()
 }
 
-fn skill<'a>(plan: &'a Plan, arm_name: &str, name: &str) -> &'a Skill {
+fn skill<'a>(plan: &'a Plan, arm_name: &str, name: &str) -> &'a SkillPlan {
     arm(plan, arm_name).skills.iter().find(|skill| skill.name == name).expect("the skill")
 }
 
@@ -159,7 +159,7 @@ fn a_mirror_image_takes_everything_from_its_skill() {
         Action::TurnLeft15,
         Action::TurnRight60,
     ];
-    let image = Skill {
+    let image = SkillPlan {
         name: "left".to_owned(),
         children: turned.map(Child::Action).to_vec(),
         mirror: Some(0),
@@ -187,13 +187,13 @@ fn a_mirror_image_takes_everything_from_its_skill() {
 }
 
 /// How a skill keeps to its child: in training, in tests, applicability, interrupt, steps.
-fn persistence(skill: &Skill) -> [u32; 5] {
+fn persistence(skill: &SkillPlan) -> [u32; 5] {
     let own = &skill.params;
     [own.persist_training, own.persist_tests, own.applicability, own.interrupt, own.child_timeout]
 }
 
 /// What its robot remembers, and the band beside a wall.
-fn memory(skill: &Skill) -> (f32, f32, f32, u32, u32) {
+fn memory(skill: &SkillPlan) -> (f32, f32, f32, u32, u32) {
     let own = &skill.params;
     (own.light_decay, own.door_decay, own.range_decay, own.beside_near, own.beside_far)
 }

@@ -3,7 +3,7 @@
 
 use skilltree::backend::Backend;
 use skilltree::backend::cpu::CpuBackend;
-use skilltree::config::plan::{Action, Child, Noise, Plan, Skill};
+use skilltree::config::plan::{Action, Child, Noise, Plan, SkillPlan};
 use skilltree::config::{Overrides, load};
 use skilltree::env::events::passed_door;
 use skilltree::env::motion::{BESIDE_LEFT, BESIDE_RIGHT, COLLISION, DOCKED, FORWARD, PASSED_DOOR, move_body};
@@ -59,7 +59,7 @@ fn on_line(x: f64, heading: f64, quarters: u32) -> Pose {
     Pose { x: x as f32, y: y as f32, heading: heading as f32 }
 }
 
-fn docking() -> (Plan, Skill) {
+fn docking() -> (Plan, SkillPlan) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/docking.toml");
     let plan = load(&path, &Overrides::default()).unwrap_or_else(|error| panic!("{error}"));
     let skill = plan.arms[0].skills[0].clone();
@@ -117,7 +117,7 @@ fn distances(
 }
 
 /// The actions that a skill chooses among.
-fn actions(skill: &Skill) -> Vec<Action> {
+fn actions(skill: &SkillPlan) -> Vec<Action> {
     let action = |child: &Child| match child {
         Child::Action(action) => *action,
         Child::Skill(_) => panic!("a skill among the children"),

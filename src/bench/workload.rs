@@ -2,8 +2,7 @@
 
 use super::BenchError;
 use crate::config::plan::Plan;
-use crate::config::{Overrides, load};
-use std::fs;
+use crate::config::{MemoryFiles, Overrides, load_from};
 use std::path::Path;
 
 /// The shipped files that benchmarks need.
@@ -27,18 +26,9 @@ pub const ONE_POINT: [&str; 2] =
 /// A shipped config with some keys set, and seeds from 0 to below `seeds`.
 ///
 /// # Errors
-/// Where the temporary folder cannot be written, or a key has no such value.
+/// Where a key has no such value.
 pub fn plan(config: &str, set: &[&str], seeds: u32) -> Result<Plan, BenchError> {
-    let failed = |path: &Path, source| BenchError::File { path: path.to_owned(), source };
-    let folder = tempfile::tempdir().map_err(|source| failed(&std::env::temp_dir(), source))?;
-    for (name, text) in FILES {
-        let path = folder.path().join(name);
-        let parent = path.parent().unwrap_or(folder.path());
-        fs::create_dir_all(parent).and_then(|()| fs::write(&path, text)).map_err(|source| failed(&path, source))?;
-    }
     let set = set.iter().map(|text| (*text).to_owned()).collect();
-    Ok(load(
-        &folder.path().join(config),
-        &Overrides { set, seeds: Some(format!("0..{seeds}")), ..Overrides::default() },
-    )?)
+    let overrides = Overrides { set, seeds: Some(format!("0..{seeds}")), ..Overrides::default() };
+    Ok(load_from(&MemoryFiles::from_iter(FILES), Path::new(config), &overrides)?)
 }

@@ -4,6 +4,7 @@ mod backend;
 mod bench;
 mod devices;
 mod failure;
+mod keys;
 mod output;
 mod parity;
 mod plan;
@@ -47,6 +48,7 @@ enum Command {
     Probe(probe::Arguments),
     Devices(devices::Arguments),
     Bench(bench::Arguments),
+    Keys(keys::Arguments),
 }
 
 /// Carries out what the user typed.
@@ -60,6 +62,7 @@ pub fn run(cli: Cli) -> Result<(), Failure> {
         Command::Probe(arguments) => probe::probe(&arguments),
         Command::Devices(arguments) => devices::devices(&arguments),
         Command::Bench(arguments) => bench::bench(&arguments),
+        Command::Keys(arguments) => keys::keys(&arguments),
     }
 }
 

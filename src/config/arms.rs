@@ -1,17 +1,17 @@
 //! The experimental conditions: the base config with each arm's own table laid over it.
 
-use super::hierarchy::{self, Link};
-use super::plan::{Arm, Skill};
-use super::skill::Reader;
-use super::sweep::Sweep;
-use super::sweep::expand::Base;
+use super::arm::{ArmReader, skills};
+use super::hierarchy;
+use super::plan::ArmPlan;
+use super::skill::SkillReader;
+use super::sweep::SweepSource;
+use super::sweep::expand::{self, Base};
 use super::unused_keys::UnusedKeys;
 use super::worlds::Worlds;
-use super::{children, keys, mirror, robot, set, teacher};
-use crate::layout::HyperParams;
-use crate::toml::document::{Entry, Node};
+use super::{keys, set};
+use crate::toml::document::{KeyValue, Node};
 use crate::toml::error::{ConfigError, list, nearest, suggest};
-use crate::toml::reader::{Item, Table, is_name};
+use crate::toml::reader::{Item, TableReader, is_name};
 use std::collections::BTreeSet;
 
 /// Name of the only arm of a config that has no `[arm.NAME]`.
@@ -43,22 +43,22 @@ pub(super) struct Arms<'a> {
     pub(super) base: &'a Node,
     /// The tables of the arms, if there are any.
     pub(super) own: Option<&'a Node>,
-    /// Trials after which skills are tested that do not name their own.
-    pub(super) eval_at: &'a [u32],
+    /// How each of them is read.
+    pub(super) reader: ArmReader<'a>,
 }
 
 /// The arms of a config.
 #[derive(Debug)]
-pub(super) struct Found {
+pub(super) struct ReadArms {
     /// All arms without the sweep, so that a mistake in one that is not run is found too.
-    base: Vec<Arm>,
+    base: Vec<ArmPlan>,
     /// The chosen arms, each at its points of the sweep.
-    pub(super) run: Vec<Arm>,
+    pub(super) run: Vec<ArmPlan>,
 }
 
-impl Found {
+impl ReadArms {
     /// The arms with and without the sweep.
-    pub(super) fn all(&self) -> impl Iterator<Item = &Arm> + Clone {
+    pub(super) fn all(&self) -> impl Iterator<Item = &ArmPlan> + Clone {
         self.base.iter().chain(&self.run)
     }
 }
@@ -67,11 +67,11 @@ impl Arms<'_> {
     /// Reads all arms, and those that are chosen at each point of the sweep.
     pub(super) fn read(
         &self,
-        root: &Table<'_>,
+        root: &TableReader<'_>,
         chosen: Option<&Item<'_>>,
-        sweep: Option<&Sweep<'_>>,
+        sweep: Option<&SweepSource<'_>>,
         worlds: &mut Worlds<'_>,
-    ) -> Result<Found, ConfigError> {
+    ) -> Result<ReadArms, ConfigError> {
         // Read below, merged with each arm.
         for key in ARM_KEYS.into_iter().filter(|key| *key != EXTENDS) {
             root.optional(key);
@@ -88,14 +88,14 @@ impl Arms<'_> {
         let mut unused = UnusedKeys::default();
         let mut base = Vec::new();
         for (name, tree) in &trees {
-            base.push(self.arm((name, 0), tree, worlds, &mut unused)?);
+            base.push(self.reader.read((name, 0), tree, worlds, &mut unused)?);
         }
         // What is in nobody's tree is held against the first arm's world.
         let first = &trees[0].1;
         let skills = skills(first)?;
-        let reader = Reader {
+        let reader = SkillReader {
             ground: Some(worlds.ground(base[0].world)),
-            ..self.reader(first, base[0].teacher.lessons, base[0].skills[0].params)
+            ..self.reader.reader(first, base[0].teacher.lessons, base[0].skills[0].params)
         };
         let trained = |name: &str| base.iter().any(|arm| arm.skills.iter().any(|skill| skill.name == name));
         for link in hierarchy::links(&skills)?.iter().filter(|link| !trained(link.name) && link.mirror.is_none()) {
@@ -109,11 +109,11 @@ impl Arms<'_> {
                 let arms = base.iter().zip(&trees).enumerate();
                 let bases =
                     arms.map(|(n, (arm, (_, tree)))| Base { arm, tree: tree.clone(), run: wanted.contains(&n) });
-                self.spread(bases.collect(), sweep, worlds, &mut unused)?
+                expand::at_points(&self.reader, bases.collect(), sweep, worlds, &mut unused)?
             }
         };
         unused.finish()?;
-        Ok(Found { base, run })
+        Ok(ReadArms { base, run })
     }
 
     /// The name and the complete config of each arm.
@@ -161,75 +161,10 @@ impl Arms<'_> {
         }
         Ok(())
     }
-
-    /// Reads skills that are not trained; those that are also need a world and an order.
-    fn reader<'b>(&'b self, tree: &'b Node, taught: u32, robot: HyperParams) -> Reader<'b> {
-        let learning = tree.get("learning");
-        Reader { learning, robot, ground: None, taught, eval_at: self.eval_at, order: &[] }
-    }
-
-    /// Reads an arm at a point from its complete config.
-    pub(super) fn arm(
-        &self,
-        (name, point): (&str, u32),
-        tree: &Node,
-        worlds: &mut Worlds<'_>,
-        unused: &mut UnusedKeys,
-    ) -> Result<Arm, ConfigError> {
-        let root = Item::root(tree).table()?;
-        let world = worlds.place(&root.required(keys::WORLD.name(), "\"worlds/office.toml\"")?)?;
-        let teacher = teacher::read(&root.required("teacher", "{}")?)?;
-        let robot = robot::read(&root.required("robot", "{}")?)?;
-        let table = skills(tree)?;
-        let links = hierarchy::links(&table)?;
-        let top = hierarchy::root(root.optional(keys::ROOT.name()).as_ref(), &links)?;
-        let order = hierarchy::order(&links, top)?;
-        let reader =
-            Reader { ground: Some(worlds.ground(world)), order: &order, ..self.reader(tree, teacher.lessons, robot) };
-        let mut skills: Vec<Skill> = Vec::new();
-        for &number in &order {
-            let skill = trained(&links[number], &reader, &skills, unused)?;
-            children::learnable(&links[number].item, number == top, &skill, &skills)?;
-            skills.push(skill);
-        }
-        let reader = self.reader(tree, teacher.lessons, robot);
-        for (_, link) in links.iter().enumerate().filter(|(number, _)| !order.contains(number)) {
-            match link.mirror {
-                None => drop(reader.skill(link, unused)?),
-                Some(_) => drop(reader.unused(link, unused)?),
-            }
-        }
-        Ok(Arm { name: name.to_owned(), point, world, skills, noise: robot.noise, teacher })
-    }
-}
-
-/// Reads a skill of an arm's tree; `earlier` ones are those that stand before it.
-fn trained(
-    link: &Link<'_>,
-    reader: &Reader<'_>,
-    earlier: &[Skill],
-    unused: &mut UnusedKeys,
-) -> Result<Skill, ConfigError> {
-    let Some((source, item)) = &link.mirror else { return reader.skill(link, unused) };
-    let own = reader.unused(link, unused)?;
-    let number = reader.place(*source);
-    let image = mirror::image(link.name, (number, &earlier[number]), item)?;
-    Ok(match own {
-        Some(eval_at) => Skill { eval_at, ..image },
-        None => image,
-    })
-}
-
-/// The table of all skills.
-fn skills(tree: &Node) -> Result<Table<'_>, ConfigError> {
-    let hint = "add [skill.dock] with inputs, reward, starts, goal and the number of trials";
-    let none = || tree.origin.file_error("the config has no skill", hint);
-    let table = Item::root(tree).table()?.optional("skill").ok_or_else(none)?.table()?;
-    if table.all().is_empty() { Err(none()) } else { Ok(table) }
 }
 
 /// Refuses names of arms and transfers that could not stand in files and on the command line.
-pub(super) fn small_name(entry: &Entry, what: &str) -> Result<(), ConfigError> {
+pub(super) fn small_name(entry: &KeyValue, what: &str) -> Result<(), ConfigError> {
     let name = &entry.key;
     if is_name(name) && !name.contains(|c: char| c == '_' || c.is_ascii_uppercase()) {
         return Ok(());

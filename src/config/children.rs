@@ -1,11 +1,11 @@
 //! What a skill chooses among, and how.
 
 use super::keys;
-use super::plan::{Action, Child, Skill, Threshold};
+use super::plan::{Action, Child, SkillPlan, Threshold};
 use crate::layout::MAX_CHILDREN;
 use crate::toml::document::Value;
 use crate::toml::error::{ConfigError, suggest};
-use crate::toml::reader::{Item, Section, argument};
+use crate::toml::reader::{Item, KeyedTable, argument};
 
 /// Reads the children, with where each is written. A skill is numbered by its place in `skills`.
 pub(super) fn read<'a>(item: &Item<'a>, skills: &[&str]) -> Result<Vec<(Child, Item<'a>)>, ConfigError> {
@@ -50,7 +50,7 @@ pub(super) fn applicable(
 }
 
 /// Refuses thresholds that nothing would teach: they are learned of the root's children, from trials that may fail.
-pub(super) fn learnable(item: &Item<'_>, root: bool, own: &Skill, skills: &[Skill]) -> Result<(), ConfigError> {
+pub(super) fn learnable(item: &Item<'_>, root: bool, own: &SkillPlan, skills: &[SkillPlan]) -> Result<(), ConfigError> {
     for (child, threshold) in own.children.iter().zip(&own.applicable) {
         let (Child::Skill(below), Some(Threshold::Learned(_))) = (child, threshold) else { continue };
         let child = &skills[*below];
@@ -94,7 +94,7 @@ fn threshold(item: &Item<'_>) -> Result<Threshold, ConfigError> {
 }
 
 /// Reads whether a skill keeps to the chosen child, in training and in tests.
-pub(super) fn persistence(section: &Section<'_>) -> Result<(bool, bool), ConfigError> {
+pub(super) fn persistence(section: &KeyedTable<'_>) -> Result<(bool, bool), ConfigError> {
     let item = section.required(&keys::SKILL_PERSISTENCE, "true")?;
     match &item.node.value {
         Value::Flag(flag) => Ok((*flag, *flag)),

@@ -4,7 +4,7 @@
 //! have theirs here. [`all`] has both.
 
 use crate::layout::params::{HyperParams, MAX_TRIALS, Noise};
-pub use crate::layout::schema::{Allowed, Bounds, KeyRow, Provenance};
+pub use crate::layout::schema::{Allowed, Bounds, DefaultSource, KeyRow};
 use Allowed::{Choice, Flag, Number, Other, Whole};
 
 macro_rules! keys {
@@ -12,7 +12,7 @@ macro_rules! keys {
         $(
             #[doc = concat!("`", $path, "`: ", $doc)]
             pub const $name: KeyRow = KeyRow {
-                path: $path, default: $default, allowed: $allowed, source: Provenance::$source, doc: $doc,
+                path: $path, default: $default, allowed: $allowed, source: DefaultSource::$source, doc: $doc,
             };
         )*
         const OTHERS: &[KeyRow] = &[$($name),*];

@@ -4,16 +4,18 @@
 //! (into which `--set arm.NAME.key=value` goes first), and the values at a point of the sweep. Within a skill, `skill.NAME.learning` lies over `learning`, also over an
 //! arm's: what names the skill is more specific.
 
+use super::arm::ArmReader;
 use super::arms::Arms;
 use super::keys::{self, KeyRow};
 use super::plan::{Evaluate, Plan};
 use super::worlds::Worlds;
 use super::{renamed, seeds, set, sweep, transfer};
 use crate::layout::params::MAX_TRIALS;
-use crate::toml::document::{Node, Origin, SWEEP, Source, Value};
+use crate::toml::document::{Node, SWEEP, SourceSpan, SourceText, Value};
 use crate::toml::error::ConfigError;
 use crate::toml::printer;
-use crate::toml::reader::{Item, Section, Table};
+use crate::toml::reader::{Item, KeyedTable, TableReader};
+use crate::toml::{Files, OsFiles};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -61,12 +63,23 @@ impl Overrides {
 
 /// A value from the command line.
 fn typed(value: Value, argument: String) -> Node {
-    Node { value, origin: Origin { source: Arc::new(Source::Argument(argument)), span: 0..0 } }
+    Node { value, origin: SourceSpan { source: Arc::new(SourceText::Argument(argument)), span: 0..0 } }
 }
 
 /// Reads a config file, the world files that it names, and the command line's changes.
+///
+/// # Errors
+/// Where a file cannot be read, or something in it or on the command line is wrong: the place, and what would be right.
 pub fn load(path: &Path, overrides: &Overrides) -> Result<Plan, ConfigError> {
-    let mut tree = read(path)?;
+    load_from(&OsFiles, path, overrides)
+}
+
+/// The same from any source of files, such as [`crate::config::MemoryFiles`].
+///
+/// # Errors
+/// As those of [`load`].
+pub fn load_from(files: &dyn Files, path: &Path, overrides: &Overrides) -> Result<Plan, ConfigError> {
+    let mut tree = read(files, path)?;
     overrides.apply(&mut tree)?;
     renamed::refuse(&tree)?;
     let mut own = tree.remove("arm").map(|entry| entry.node);
@@ -80,14 +93,15 @@ pub fn load(path: &Path, overrides: &Overrides) -> Result<Plan, ConfigError> {
         Some(item) => item.short_name()?.to_owned(),
         None => path.file_stem().map_or_else(|| "config".to_owned(), |stem| stem.to_string_lossy().into_owned()),
     };
-    let mut worlds = Worlds::new(path);
+    let mut worlds = Worlds::new(files, path);
     worlds.place(&root.required(keys::WORLD.name(), "\"worlds/office.toml\"")?)?;
     let evaluate = evaluate(&root)?;
-    let section = Section(root);
+    let section = KeyedTable(root);
     let run_seed = section.word(&keys::SEED)?;
     let sweep = sweep::read(swept.as_ref(), &base, run_seed)?;
     let chosen = section.0.optional(keys::ARMS.name());
-    let arms = Arms { base: &base, own: own.as_ref(), eval_at: &evaluate.at };
+    let reader = ArmReader { eval_at: &evaluate.at };
+    let arms = Arms { base: &base, own: own.as_ref(), reader };
     let arms = arms.read(&section.0, chosen.as_ref(), sweep.as_ref(), &mut worlds)?;
     let alterations = match &transferred {
         Some(transferred) => transfer::read(transferred, &base, arms.all(), &mut worlds)?,
@@ -111,10 +125,8 @@ pub fn load(path: &Path, overrides: &Overrides) -> Result<Plan, ConfigError> {
 }
 
 /// A config's tree, laid over that of the config that it extends.
-fn read(path: &Path) -> Result<Node, ConfigError> {
-    let text = |path: &Path| {
-        std::fs::read_to_string(path).map_err(|error| ConfigError::unreadable(path, "config file", &error))
-    };
+fn read(files: &dyn Files, path: &Path) -> Result<Node, ConfigError> {
+    let text = |path: &Path| files.read(path).map_err(|error| ConfigError::unreadable(path, "config file", &error));
     let mut tree = Node::parse(&text(path)?, path)?;
     let Some(entry) = tree.remove(keys::EXTENDS.name()) else { return Ok(tree) };
     let item = Item { name: keys::EXTENDS.name().to_owned(), node: &entry.node };
@@ -138,8 +150,8 @@ fn read(path: &Path) -> Result<Node, ConfigError> {
 
 /// The tree of all defaults, with one table for each skill of the file, in its order.
 fn defaults(tree: &Node) -> Result<Node, ConfigError> {
-    let source = Arc::new(Source::Default("the whole config"));
-    let mut out = Node::empty(Origin { source, span: 0..0 });
+    let source = Arc::new(SourceText::Default("the whole config"));
+    let mut out = Node::empty(SourceSpan { source, span: 0..0 });
     let skills = set::names(tree, "skill");
     for key in keys::all() {
         let Some(text) = key.default else { continue };
@@ -157,8 +169,8 @@ fn defaults(tree: &Node) -> Result<Node, ConfigError> {
 }
 
 fn default(key: &KeyRow, text: &str, path: &[&str]) -> Result<Node, ConfigError> {
-    let source = Arc::new(Source::Default(key.path));
-    let origin = Origin { source: Arc::clone(&source), span: 0..0 };
+    let source = Arc::new(SourceText::Default(key.path));
+    let origin = SourceSpan { source: Arc::clone(&source), span: 0..0 };
     // A test reads every default; a broken one is still reported and not a panic.
     let broken = || Err(origin.error(format!("`{text}` is not TOML"), "please report this"));
     let mut node = Node::parse_value(text, &source).unwrap_or_else(broken)?;
@@ -170,8 +182,8 @@ fn default(key: &KeyRow, text: &str, path: &[&str]) -> Result<Node, ConfigError>
     Ok(node)
 }
 
-fn evaluate(root: &Table<'_>) -> Result<Evaluate, ConfigError> {
-    let section = Section(root.required("evaluate", "{}")?.table()?);
+fn evaluate(root: &TableReader<'_>) -> Result<Evaluate, ConfigError> {
+    let section = KeyedTable(root.required("evaluate", "{}")?.table()?);
     let at = section.required(&keys::EVALUATE_AT, "[0, 100]")?.ascending(MAX_TRIALS)?;
     let evaluate = Evaluate { at, episodes: section.word(&keys::EVALUATE_EPISODES)? };
     section.0.finish()?;

@@ -1,12 +1,12 @@
 //! Skills that are the mirror image of another one and use its nets.
 
-use super::plan::{Child, Event, Skill};
+use super::plan::{Child, Event, SkillPlan};
 use crate::layout::HyperParams;
 use crate::toml::error::ConfigError;
 use crate::toml::reader::Item;
 
 /// Refuses replays seen in a mirror that would not show the same skill; `item` is where they are asked for.
-pub(super) fn check_replays(skill: &Skill, item: &Item<'_>) -> Result<(), ConfigError> {
+pub(super) fn check_replays(skill: &SkillPlan, item: &Item<'_>) -> Result<(), ConfigError> {
     let problem = if skill.is_high() {
         Some("which chooses among skills".to_owned())
     } else if let Some(input) = skill.inputs.iter().find(|input| !input.is_mirrored()) {
@@ -28,7 +28,11 @@ pub(super) fn check_replays(skill: &Skill, item: &Item<'_>) -> Result<(), Config
 }
 
 /// The mirror image of `source`, which is the arm's skill of that number; `item` is where it is named.
-pub(super) fn image(name: &str, (number, source): (usize, &Skill), item: &Item<'_>) -> Result<Skill, ConfigError> {
+pub(super) fn image(
+    name: &str,
+    (number, source): (usize, &SkillPlan),
+    item: &Item<'_>,
+) -> Result<SkillPlan, ConfigError> {
     if let Some(input) = source.inputs.iter().find(|input| !input.is_mirrored()) {
         let message = format!(
             "`{name}` cannot be the mirror image of `{}`, whose input `{}` has none",
@@ -47,7 +51,7 @@ pub(super) fn image(name: &str, (number, source): (usize, &Skill), item: &Item<'
             goal |= seen.mirrored().bit();
         }
     }
-    Ok(Skill {
+    Ok(SkillPlan {
         name: name.to_owned(),
         children: source.children.iter().map(|child| child.mirrored()).collect(),
         // An oracle has no nets: its image is one too.

@@ -6,6 +6,7 @@
 //! `worlds` the floor plans,
 //! `sweep` the points at which arms are run. [`load()`] puts the layers together.
 
+mod arm;
 mod arms;
 mod children;
 mod hierarchy;
@@ -14,6 +15,7 @@ pub mod keys;
 mod load;
 mod mirror;
 pub mod plan;
+pub mod reference;
 mod renamed;
 mod robot;
 mod seeds;
@@ -25,6 +27,6 @@ mod transfer;
 mod unused_keys;
 mod worlds;
 
-pub use crate::toml::{ConfigError, Place};
-pub use load::{Overrides, load};
+pub use crate::toml::{ConfigError, Files, MemoryFiles, OsFiles, Place};
+pub use load::{Overrides, load, load_from};
 pub use seeds::parse_seeds;

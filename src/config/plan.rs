@@ -7,7 +7,7 @@ mod skill;
 mod sweep;
 
 pub use crate::layout::{Action, Event, Input, Noise};
-pub use skill::{Child, Skill, Threshold};
+pub use skill::{Child, SkillPlan, Threshold};
 pub use sweep::{Axis, AxisValue, Design, Scale, Sweep};
 
 use crate::world::World;
@@ -26,7 +26,7 @@ pub struct Plan {
     /// The floor plans that arms and alterations name, each once; the config's own is the first.
     pub worlds: Vec<PlacedWorld>,
     /// The experimental conditions: each arm at each point of the sweep, by arm in the order of the file, then by point.
-    pub arms: Vec<Arm>,
+    pub arms: Vec<ArmPlan>,
     /// What differs between the points of an arm, if anything does.
     pub sweep: Option<Sweep>,
     /// Other circumstances in which the learned roots are tested after their last trial, without training.
@@ -44,7 +44,7 @@ impl Plan {
     }
 
     /// The floor plan in which an arm trains.
-    pub fn world_of(&self, arm: &Arm) -> &World {
+    pub fn world_of(&self, arm: &ArmPlan) -> &World {
         &self.worlds[arm.world].world
     }
 
@@ -67,7 +67,7 @@ pub struct PlacedWorld {
 
 /// One experimental condition: the base config with this arm's changes applied, and over them a point of the sweep.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Arm {
+pub struct ArmPlan {
     /// Key of the arm in the config, `[a-z0-9-]+`; the same at all points.
     pub name: String,
     /// Index into [`Sweep::points`]; 0 without a sweep.
@@ -75,14 +75,14 @@ pub struct Arm {
     /// Index of its floor plan in [`Plan::worlds`].
     pub world: usize,
     /// The skills of the root's tree, children before parents; the last one is the root.
-    pub skills: Vec<Skill>,
+    pub skills: Vec<SkillPlan>,
     /// Sensors and actuators of this arm's robots.
     pub noise: Noise,
     /// The teacher's bank and how it demonstrates.
-    pub teacher: Teacher,
+    pub teacher: TeacherPlan,
 }
 
-impl Arm {
+impl ArmPlan {
     /// What files call a child of one of the arm's skills.
     pub fn name_of(&self, child: Child) -> &str {
         match child {
@@ -115,7 +115,7 @@ pub struct Evaluate {
 
 /// The teacher: a privileged planner.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Teacher {
+pub struct TeacherPlan {
     /// Lessons demonstrated for each skill; learners draw theirs from them.
     pub lessons: u32,
     /// Discount factor of the planner: its own, so that learners with different ones share a teacher.

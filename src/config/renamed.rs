@@ -1,6 +1,6 @@
 //! Keys and words of earlier versions, and what they are called now.
 
-use crate::toml::document::{Entry, Node, Value};
+use crate::toml::document::{KeyValue, Node, Value};
 use crate::toml::error::ConfigError;
 
 /// Old paths and new ones; `*` stands for a name that the file gives.
@@ -48,7 +48,7 @@ fn walk<'a>(node: &'a Node, path: &mut Vec<&'a str>) -> Result<(), ConfigError> 
     Ok(())
 }
 
-fn check(entry: &Entry, path: &[&str]) -> Result<(), ConfigError> {
+fn check(entry: &KeyValue, path: &[&str]) -> Result<(), ConfigError> {
     let is = |pattern: &str| {
         let parts = pattern.split('.');
         parts.clone().count() == path.len() && parts.zip(path).all(|(part, name)| part == "*" || part == *name)

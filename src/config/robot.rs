@@ -2,15 +2,15 @@
 
 use crate::layout::{HyperParams, Noise};
 use crate::toml::error::ConfigError;
-use crate::toml::reader::{Item, Section};
+use crate::toml::reader::{Item, KeyedTable};
 use bytemuck::Zeroable;
 
 /// Reads a complete `robot` table into the numbers of skills that it concerns; the others are 0.
 pub(super) fn read(item: &Item<'_>) -> Result<HyperParams, ConfigError> {
     let table = item.table()?;
     let mut params = HyperParams { noise: noise(&table.required("noise", "{}")?)?, ..HyperParams::zeroed() };
-    let memory = Section(table.required("memory", "{}")?.table()?);
-    let beside = Section(table.required("beside", "{}")?.table()?);
+    let memory = KeyedTable(table.required("memory", "{}")?.table()?);
+    let beside = KeyedTable(table.required("beside", "{}")?.table()?);
     table.finish()?;
     memory.fill("robot.memory.", HyperParams::rows(), &mut params)?;
     beside.fill("robot.beside.", HyperParams::rows(), &mut params)?;
@@ -31,7 +31,7 @@ pub(super) fn read(item: &Item<'_>) -> Result<HyperParams, ConfigError> {
 
 /// Reads a complete table of noise.
 pub(super) fn noise(item: &Item<'_>) -> Result<Noise, ConfigError> {
-    let section = Section(item.table()?);
+    let section = KeyedTable(item.table()?);
     let mut noise = Noise::zeroed();
     section.fill("robot.noise.", Noise::rows(), &mut noise)?;
     section.0.finish()?;

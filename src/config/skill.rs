@@ -2,7 +2,7 @@
 
 use super::hierarchy::Link;
 use super::keys;
-use super::plan::{Child, Event, Skill, Threshold};
+use super::plan::{Child, Event, SkillPlan, Threshold};
 use super::unused_keys::UnusedKeys;
 use super::worlds::Ground;
 use super::{children, inputs, mirror};
@@ -11,12 +11,12 @@ use crate::layout::params::{ALWAYS, MAX_TRIALS};
 use crate::layout::{EVENTS, HyperParams, MAX_CHILDREN, MAX_STARTS};
 use crate::toml::document::{Node, Value};
 use crate::toml::error::{ConfigError, suggest};
-use crate::toml::reader::{Item, Section};
+use crate::toml::reader::{Item, KeyedTable};
 use crate::world::World;
 
 /// What the skills of an arm are read with, besides their own tables.
 #[derive(Debug)]
-pub(super) struct Reader<'a> {
+pub(super) struct SkillReader<'a> {
     /// What `skill.NAME.learning` lies over.
     pub(super) learning: Option<&'a Node>,
     /// The arm's floor plan. None for skills that the arm does not train: they may belong in another one, so that
@@ -32,11 +32,11 @@ pub(super) struct Reader<'a> {
     pub(super) order: &'a [usize],
 }
 
-impl Reader<'_> {
+impl SkillReader<'_> {
     /// Reads a skill that is no mirror image.
-    pub(super) fn skill(&self, link: &Link<'_>, unused: &mut UnusedKeys) -> Result<Skill, ConfigError> {
+    pub(super) fn skill(&self, link: &Link<'_>, unused: &mut UnusedKeys) -> Result<SkillPlan, ConfigError> {
         let (ground, world) = (self.ground, self.ground.map(|ground| ground.world));
-        let section = Section(link.item.table()?);
+        let section = KeyedTable(link.item.table()?);
         let asked = section.required(&keys::SKILL_INPUTS, "[\"sonar\", \"light\", \"bumpers\"]")?;
         let inputs = inputs::read(&asked, world)?;
         // These two are in the link already.
@@ -64,7 +64,7 @@ impl Reader<'_> {
         if oracle {
             (params.lessons, params.trials) = (0, 0);
         }
-        let skill = Skill {
+        let skill = SkillPlan {
             name: link.name.to_owned(),
             inputs,
             children: link.children.iter().map(|(child, _)| self.child(*child)).collect(),
@@ -88,7 +88,7 @@ impl Reader<'_> {
     /// Checks the table of a mirror image for misspelt keys. They are what the skill is where an arm says
     /// `mirror = false`; until then `eval_at` alone is used, and returned if it is there.
     pub(super) fn unused(&self, link: &Link<'_>, unused: &mut UnusedKeys) -> Result<Option<Vec<u32>>, ConfigError> {
-        let section = Section(link.item.table()?);
+        let section = KeyedTable(link.item.table()?);
         for key in keys::all().filter(|key| key.path.starts_with("skill.*.")) {
             section.0.optional(key.name());
         }
@@ -98,7 +98,7 @@ impl Reader<'_> {
         Ok(eval_at)
     }
 
-    fn eval_at(&self, section: &Section<'_>) -> Result<Option<Vec<u32>>, ConfigError> {
+    fn eval_at(&self, section: &KeyedTable<'_>) -> Result<Option<Vec<u32>>, ConfigError> {
         section.0.optional(keys::SKILL_EVAL_AT.name()).map(|item| item.ascending(MAX_TRIALS)).transpose()
     }
 
@@ -114,7 +114,7 @@ impl Reader<'_> {
         }
     }
 
-    fn check_lessons(&self, lessons: u32, section: &Section<'_>, link: &Link<'_>) -> Result<(), ConfigError> {
+    fn check_lessons(&self, lessons: u32, section: &KeyedTable<'_>, link: &Link<'_>) -> Result<(), ConfigError> {
         let item = section.0.required("lessons", "10")?;
         if lessons > 0 && link.skills().next().is_some() {
             let message = format!("`{}` cannot have lessons: nobody demonstrates skills", link.name);
@@ -130,7 +130,7 @@ impl Reader<'_> {
     /// The numbers of learning, with those of the robot; all others are 0.
     fn learning(
         &self,
-        section: &Section<'_>,
+        section: &KeyedTable<'_>,
         skill: &Item<'_>,
         unused: &mut UnusedKeys,
     ) -> Result<HyperParams, ConfigError> {
@@ -141,7 +141,7 @@ impl Reader<'_> {
             merged.merge(over.node.clone());
         }
         let name = over.map_or_else(|| "learning".to_owned(), |over| over.name);
-        let section = Section(Item { name, node: &merged }.table()?);
+        let section = KeyedTable(Item { name, node: &merged }.table()?);
         let mut params = self.robot;
         section.fill("learning.", HyperParams::rows(), &mut params)?;
         unused.note(&section, params.optimiser)?;
@@ -157,7 +157,7 @@ impl Reader<'_> {
 }
 
 /// Where replays in a mirror are asked for: in the skill's own table, or in the one below it.
-impl<'a> Reader<'a> {
+impl<'a> SkillReader<'a> {
     fn mirror_replays(&self, skill: &Item<'a>) -> Item<'a> {
         let key = "mirror_replays";
         let own = skill.node.get("learning").and_then(|learning| learning.get(key));
@@ -166,7 +166,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-fn oracle(section: &Section<'_>, link: &Link<'_>) -> Result<bool, ConfigError> {
+fn oracle(section: &KeyedTable<'_>, link: &Link<'_>) -> Result<bool, ConfigError> {
     let item = section.required(&keys::SKILL_ORACLE, "false")?;
     let oracle = item.flag()?;
     if oracle && link.skills().next().is_some() {
@@ -179,10 +179,10 @@ fn oracle(section: &Section<'_>, link: &Link<'_>) -> Result<bool, ConfigError> {
 }
 
 /// Makes a complaint, from its message and hint, about the place of a name.
-type Place<'a> = dyn Fn(String, String) -> ConfigError + 'a;
+type Complain<'a> = dyn Fn(String, String) -> ConfigError + 'a;
 
 /// An event that can happen in this world.
-fn event(name: &str, place: &Place<'_>, world: Option<&World>) -> Result<Event, ConfigError> {
+fn event(name: &str, place: &Complain<'_>, world: Option<&World>) -> Result<Event, ConfigError> {
     let names = Event::ALL.map(Event::name);
     let Some(code) = names.iter().position(|known| *known == name) else {
         return Err(place(format!("`{name}` is not one of the events"), suggest(name, "events", &names)));
@@ -219,7 +219,7 @@ fn goal(item: &Item<'_>, world: Option<&World>) -> Result<u32, ConfigError> {
 }
 
 /// The name of a region in which a trial can start.
-fn region(name: &str, place: &Place<'_>, ground: Option<Ground<'_>>) -> Result<String, ConfigError> {
+fn region(name: &str, place: &Complain<'_>, ground: Option<Ground<'_>>) -> Result<String, ConfigError> {
     let Some(ground) = ground else { return Ok(name.to_owned()) };
     let world = ground.world;
     let names = world.region_names();

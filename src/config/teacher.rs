@@ -1,14 +1,14 @@
 //! The keys of `teacher`.
 
 use super::keys;
-use super::plan::Teacher;
+use super::plan::TeacherPlan;
 use crate::toml::error::ConfigError;
-use crate::toml::reader::{Item, Section};
+use crate::toml::reader::{Item, KeyedTable};
 
 /// Reads a complete `teacher` table.
-pub(super) fn read(item: &Item<'_>) -> Result<Teacher, ConfigError> {
-    let section = Section(item.table()?);
-    let teacher = Teacher {
+pub(super) fn read(item: &Item<'_>) -> Result<TeacherPlan, ConfigError> {
+    let section = KeyedTable(item.table()?);
+    let teacher = TeacherPlan {
         lessons: section.word(&keys::TEACHER_LESSONS)?,
         discount: section.number(&keys::TEACHER_DISCOUNT)?,
         backward_cost: section.number(&keys::TEACHER_BACKWARD_COST)?,

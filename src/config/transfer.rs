@@ -1,10 +1,10 @@
 //! Other circumstances in which the roots that were learned are tested once more.
 
 use super::arms::small_name;
-use super::plan::{Alteration, Arm, Event, Noise};
+use super::plan::{Alteration, ArmPlan, Event, Noise};
 use super::worlds::{Ground, Worlds};
 use super::{keys, robot};
-use crate::toml::document::{Node, Origin};
+use crate::toml::document::{Node, SourceSpan};
 use crate::toml::error::ConfigError;
 use crate::toml::reader::Item;
 use crate::world::World;
@@ -13,7 +13,7 @@ use crate::world::World;
 pub(super) fn read<'a>(
     altered: &Node,
     base: &Node,
-    arms: impl Iterator<Item = &'a Arm> + Clone,
+    arms: impl Iterator<Item = &'a ArmPlan> + Clone,
     worlds: &mut Worlds<'_>,
 ) -> Result<Vec<Alteration>, ConfigError> {
     let mut alterations = Vec::new();
@@ -52,7 +52,7 @@ fn laid_over(item: &Item<'_>, base: &Node) -> Result<Noise, ConfigError> {
 }
 
 /// Refuses a world with other rooms than `usual`: what was learned there, and the results, tell rooms by their order.
-fn check_rooms(world: &World, usual: &World, place: &Origin) -> Result<(), ConfigError> {
+fn check_rooms(world: &World, usual: &World, place: &SourceSpan) -> Result<(), ConfigError> {
     let names = |world: &World| world.rooms.iter().map(|room| room.name.clone()).collect::<Vec<_>>();
     let (found, wanted) = (names(world), names(usual));
     if found == wanted {
@@ -64,7 +64,7 @@ fn check_rooms(world: &World, usual: &World, place: &Origin) -> Result<(), Confi
 }
 
 /// Refuses a world in which a root's tests cannot start, or never end as achieved.
-fn check_root(ground: Ground<'_>, arm: &Arm, place: &Origin) -> Result<(), ConfigError> {
+fn check_root(ground: Ground<'_>, arm: &ArmPlan, place: &SourceSpan) -> Result<(), ConfigError> {
     let Some(root) = arm.skills.last() else { return Ok(()) };
     let world = ground.world;
     let problem = match ground.region_is_empty(&root.eval_starts) {

@@ -4,7 +4,7 @@ use crate::layout::HyperParams;
 use crate::layout::choices::OPTIMISER_SGD;
 use crate::toml::document::Node;
 use crate::toml::error::ConfigError;
-use crate::toml::reader::{Item, Section};
+use crate::toml::reader::{Item, KeyedTable};
 use std::sync::Arc;
 
 /// Keys of an optimiser, and whether that is sgd.
@@ -17,7 +17,7 @@ pub(super) struct UnusedKeys(Vec<(String, Node, bool)>);
 
 impl UnusedKeys {
     /// Notes which keys of a complete `learning` table its optimiser reads.
-    pub(super) fn note(&mut self, section: &Section<'_>, optimiser: u32) -> Result<(), ConfigError> {
+    pub(super) fn note(&mut self, section: &KeyedTable<'_>, optimiser: u32) -> Result<(), ConfigError> {
         for row in HyperParams::rows() {
             let Some((_, sgd)) = KEYS.iter().find(|(path, _)| *path == row.key.path) else { continue };
             let Some(item) = section.0.optional(row.key.name()) else { continue };

@@ -7,7 +7,7 @@
 use super::choices::{BACKUPS, NOISE_KINDS, OPTIMISER_SGD, OPTIMISERS, POLICIES};
 use super::events::EVENTS;
 use super::schema::Allowed::{self, Choice, Flag, Number, Whole};
-use super::schema::{Bounds, KeyRow, Provenance};
+use super::schema::{Bounds, DefaultSource, KeyRow};
 use super::sizes::MAX_CHILDREN;
 use bytemuck::{Pod, Zeroable};
 
@@ -59,7 +59,7 @@ macro_rules! params {
                 path: $path,
                 default: Some($default),
                 allowed: $allowed,
-                source: Provenance::$source,
+                source: DefaultSource::$source,
                 doc: concat!($($doc),+),
             },
             word: std::mem::offset_of!($name, $field) / 4,

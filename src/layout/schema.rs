@@ -91,7 +91,7 @@ impl fmt::Display for Allowed {
 
 /// Where a default comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Provenance {
+pub enum DefaultSource {
     /// Stated by the paper.
     Paper,
     /// Our choice.
@@ -108,7 +108,7 @@ pub struct KeyRow {
     /// What it may be.
     pub allowed: Allowed,
     /// Where the default comes from.
-    pub source: Provenance,
+    pub source: DefaultSource,
     /// What it means, with its unit.
     pub doc: &'static str,
 }

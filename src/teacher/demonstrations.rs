@@ -1,7 +1,7 @@
 //! Demonstrations: the bank of taught lessons, and the planner's own tests.
 
 use super::value_iteration::{Planner, origin_of};
-use crate::config::plan::Skill;
+use crate::config::plan::SkillPlan;
 use crate::env::reset::{start_pose, start_region};
 use crate::env::workgroup::{CohortData, Scratch};
 use crate::layout::{Agent, BASE_WORDS, HyperParams, SkillShape};
@@ -89,7 +89,7 @@ impl Teacher<'_> {
     ///
     /// # Errors
     /// Where too few demonstrations succeed.
-    pub fn bank(&self, skill: &Skill, wanted: u32) -> Result<Vec<u32>, TeacherError> {
+    pub fn bank(&self, skill: &SkillPlan, wanted: u32) -> Result<Vec<u32>, TeacherError> {
         let mut words = Vec::new();
         let mut lessons = 0;
         let mut tried = 0;

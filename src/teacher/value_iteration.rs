@@ -3,7 +3,7 @@
 //! The grid is 5 in x 5 in x 15 degrees. Actuator noise enters by a three-point quadrature; between grid
 //! poses values are interpolated, over the poses that a robot can take.
 
-use crate::config::plan::{Action, Event, Noise, Skill};
+use crate::config::plan::{Action, Event, Noise, SkillPlan};
 use crate::env::events::{NOWHERE, following_wall, passed_door, room_of};
 use crate::env::motion::{BESIDE_LEFT, BESIDE_RIGHT, COLLISION, PASSED_DOOR, move_body};
 use crate::env::sonar::{ranges, rays, reading};
@@ -78,7 +78,7 @@ struct Outcome {
 
 impl Planner {
     /// Plans a skill. For one over skills it plans over all actions: the bound of every tree below it.
-    pub fn new(world: &World, shared: &CohortData, skill: &Skill, terms: &Terms) -> Self {
+    pub fn new(world: &World, shared: &CohortData, skill: &SkillPlan, terms: &Terms) -> Self {
         let Terms { noise, beside, discount, backward_cost, collision_cost, pitch } = *terms;
         let columns = (world.size.x / pitch) as usize + 1;
         let rows = (world.size.y / pitch) as usize + 1;
@@ -382,7 +382,7 @@ fn slips(noise: &Noise) -> [(f32, f32); SLIPS] {
     [(1.0 - reach, weight), (1.0, 1.0 - 2.0 * weight), (1.0 + reach, weight)]
 }
 
-fn pays_beside(skill: &Skill) -> bool {
+fn pays_beside(skill: &SkillPlan) -> bool {
     let paid = |event: Event| skill.params.reward[event as usize] != 0.0;
     paid(Event::BesideRight) || paid(Event::BesideLeft) || skill.goal & (BESIDE_RIGHT | BESIDE_LEFT) != 0
 }

@@ -1,6 +1,6 @@
 //! Takes typed values out of a [`Node`] tree and refuses what nobody asked for.
 
-use super::document::{Entry, Node, Origin, Value};
+use super::document::{KeyValue, Node, SourceSpan, Value};
 use super::error::{ConfigError, list, nearest, suggest};
 use crate::layout::params::ParamRow;
 use crate::layout::schema::{Allowed, Bounds, KeyRow};
@@ -31,7 +31,7 @@ impl<'a> Item<'a> {
     }
 
     /// Where it was written.
-    pub(crate) fn origin(&self) -> &'a Origin {
+    pub(crate) fn origin(&self) -> &'a SourceSpan {
         &self.node.origin
     }
 
@@ -181,11 +181,11 @@ impl<'a> Item<'a> {
         Ok(out)
     }
 
-    /// The table; every key that is not asked for before [`Table::finish`] is refused there.
-    pub(crate) fn table(&self) -> Result<Table<'a>, ConfigError> {
+    /// The table; every key that is not asked for before [`TableReader::finish`] is refused there.
+    pub(crate) fn table(&self) -> Result<TableReader<'a>, ConfigError> {
         match &self.node.value {
             Value::Table(entries) => {
-                Ok(Table { name: self.name.clone(), node: self.node, entries, asked: RefCell::new(Vec::new()) })
+                Ok(TableReader { name: self.name.clone(), node: self.node, entries, asked: RefCell::new(Vec::new()) })
             }
             _ => Err(self.wrong("a table", "write its keys below a [header], or as { key = value }")),
         }
@@ -194,14 +194,14 @@ impl<'a> Item<'a> {
 
 /// A table that keeps track of the keys that were asked for.
 #[derive(Debug)]
-pub(crate) struct Table<'a> {
+pub(crate) struct TableReader<'a> {
     name: String,
     node: &'a Node,
-    entries: &'a [Entry],
+    entries: &'a [KeyValue],
     asked: RefCell<Vec<String>>,
 }
 
-impl<'a> Table<'a> {
+impl<'a> TableReader<'a> {
     /// The full dotted name of a key.
     pub(crate) fn name_of(&self, key: &str) -> String {
         if self.name.is_empty() { key.to_owned() } else { format!("{}.{key}", self.name) }
@@ -237,7 +237,7 @@ impl<'a> Table<'a> {
     }
 
     /// All keys with their values, all counted as asked for.
-    pub(crate) fn all(&self) -> Vec<(&'a Entry, Item<'a>)> {
+    pub(crate) fn all(&self) -> Vec<(&'a KeyValue, Item<'a>)> {
         let mut asked = self.asked.borrow_mut();
         let each = self.entries.iter().map(|entry| {
             asked.push(entry.key.clone());
@@ -262,9 +262,9 @@ impl<'a> Table<'a> {
 
 /// A table whose keys have rows, which hold their ranges. Defaults are in the tree already.
 #[derive(Debug)]
-pub(crate) struct Section<'a>(pub(crate) Table<'a>);
+pub(crate) struct KeyedTable<'a>(pub(crate) TableReader<'a>);
 
-impl<'a> Section<'a> {
+impl<'a> KeyedTable<'a> {
     /// The value of a key that must be there; `example` shows one.
     pub(crate) fn required(&self, key: &KeyRow, example: &str) -> Result<Item<'a>, ConfigError> {
         self.0.required(key.name(), example)
@@ -286,6 +286,14 @@ impl<'a> Section<'a> {
     /// A number in the key's range.
     pub(crate) fn number(&self, key: &KeyRow) -> Result<f32, ConfigError> {
         self.word(key).map(f32::from_bits)
+    }
+
+    /// A number in the key's range, or its default where it is left out of a file that no defaults lie under.
+    pub(crate) fn number_or_default(&self, key: &KeyRow) -> Result<f32, ConfigError> {
+        match (self.0.optional(key.name()), key.default.and_then(|text| text.parse().ok())) {
+            (None, Some(default)) => Ok(default),
+            _ => self.number(key),
+        }
     }
 
     /// Reads the keys whose paths are `prefix` and a name into the fields of `out` that their rows name.

@@ -1,6 +1,6 @@
 //! From a plan to the memory of a cohort: every derived size is computed here, once.
 
-use crate::config::plan::{Arm, Child, Input, Skill};
+use crate::config::plan::{ArmPlan, Child, Input, SkillPlan};
 use crate::layout::sensors::{GROUP_SONAR, GROUP_SONAR_COMPASS};
 use crate::layout::{
     BASE_WORDS, HyperParams, LANES, LESSON_HEADER, LearnerState, MAX_CHILDREN, MAX_GROUPS, MAX_INPUTS, MAX_ROWS,
@@ -44,12 +44,12 @@ impl Shape {
     ///
     /// # Errors
     /// Where a skill exceeds a limit of the layout, or starts in a region without free space.
-    pub fn new(world: &World, arms: &[&Arm]) -> Result<Self, ShapeError> {
+    pub fn new(world: &World, arms: &[&ArmPlan]) -> Result<Self, ShapeError> {
         let mut shape =
             Self { skills: Vec::new(), tables: Tables::new(world), nets_stride: 0, lessons_stride: 0, rows_stride: 0 };
         for (number, skill) in arms[0].skills.iter().enumerate() {
             let siblings = || arms.iter().map(|arm| &arm.skills[number]);
-            let most = |size: fn(&Skill) -> u32| siblings().map(size).max().unwrap_or(0);
+            let most = |size: fn(&SkillPlan) -> u32| siblings().map(size).max().unwrap_or(0);
             let mut plan = plan_of(skill, world, &mut shape.tables)?;
             plan.watched = watched(&arms[0].skills, number);
             plan.lesson_stride = lesson_stride(most(|skill| skill.params.max_steps), plan.record_words);
@@ -89,9 +89,9 @@ impl Shape {
     }
 
     /// A learner's params for each skill, its state before the first iteration, and its initial nets.
-    pub fn learner(&self, arm: &Arm, run_seed: u32, seed: u32) -> (Vec<HyperParams>, LearnerState, Vec<f32>) {
+    pub fn learner(&self, arm: &ArmPlan, run_seed: u32, seed: u32) -> (Vec<HyperParams>, LearnerState, Vec<f32>) {
         let mut nets = vec![0.0; self.nets_stride];
-        let own = |skill: &Skill| HyperParams { run_seed, learner_seed: seed, ..skill.params };
+        let own = |skill: &SkillPlan| HyperParams { run_seed, learner_seed: seed, ..skill.params };
         let params: Vec<HyperParams> = arm.skills.iter().map(own).collect();
         for (number, plan) in self.skills.iter().enumerate().filter(|(number, _)| arm.skills[*number].mirror.is_none())
         {
@@ -107,7 +107,7 @@ pub fn lesson_stride(max_steps: u32, record_words: u32) -> u32 {
 }
 
 /// Bits of the skills below `root`, at any depth, on whose values some threshold in its tree depends.
-fn watched(skills: &[Skill], root: usize) -> u32 {
+fn watched(skills: &[SkillPlan], root: usize) -> u32 {
     let mut below = 1_u32 << root;
     let mut watched = 0;
     for (n, skill) in skills.iter().enumerate().rev().filter(|(n, _)| *n <= root && *n < MAX_SKILLS) {
@@ -123,7 +123,7 @@ fn watched(skills: &[Skill], root: usize) -> u32 {
     watched
 }
 
-fn plan_of(skill: &Skill, world: &World, tables: &mut Tables) -> Result<SkillShape, ShapeError> {
+fn plan_of(skill: &SkillPlan, world: &World, tables: &mut Tables) -> Result<SkillShape, ShapeError> {
     let refuse = |message: String, hint: &str| ShapeError { skill: skill.name.clone(), message, hint: hint.to_owned() };
     let rooms = world.rooms.len();
     let inputs = skill.width(rooms);
@@ -188,7 +188,7 @@ fn plan_of(skill: &Skill, world: &World, tables: &mut Tables) -> Result<SkillSha
 }
 
 /// Whether a skill's inputs stand in the second part of a record.
-fn recalls(skill: &Skill) -> bool {
+fn recalls(skill: &SkillPlan) -> bool {
     skill.inputs.iter().any(|input| input.is_recalled())
 }
 

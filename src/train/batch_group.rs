@@ -2,7 +2,7 @@
 
 use super::fingerprint::{classes, of_tasks};
 use crate::backend::Cohort;
-use crate::config::plan::{Action, Arm, Event, Plan, Skill};
+use crate::config::plan::{Action, ArmPlan, Event, Plan, SkillPlan};
 use crate::env::segments::SegmentGrid;
 use crate::env::workgroup::CohortData;
 use crate::layout::{BASE_WORDS, HyperParams, SkillShape};
@@ -58,8 +58,8 @@ pub fn groups(plan: &Plan) -> Result<Vec<Group>, SetupError> {
 }
 
 /// Whether two arms differ in nothing but per-learner numbers that the teacher does not see.
-pub(super) fn alike(a: &Arm, b: &Arm) -> bool {
-    let bare = |skill: &Skill, like: &Skill| {
+pub(super) fn alike(a: &ArmPlan, b: &ArmPlan) -> bool {
+    let bare = |skill: &SkillPlan, like: &SkillPlan| {
         let own = &skill.params;
         let params = HyperParams {
             noise: own.noise,
@@ -73,7 +73,7 @@ pub(super) fn alike(a: &Arm, b: &Arm) -> bool {
             reward: own.reward,
             ..like.params
         };
-        let mut bare = Skill { params, eval_at: like.eval_at.clone(), ..skill.clone() };
+        let mut bare = SkillPlan { params, eval_at: like.eval_at.clone(), ..skill.clone() };
         for (own, other) in bare.applicable.iter_mut().zip(&like.applicable) {
             *own = if own.is_some() && other.is_some() { *other } else { *own };
         }
@@ -112,7 +112,7 @@ impl Solved {
     }
 
     /// Whether these tests are still to be made; from now on they are not.
-    fn claim(&mut self, task: &Task, skill: &Skill, episodes: u32) -> bool {
+    fn claim(&mut self, task: &Task, skill: &SkillPlan, episodes: u32) -> bool {
         let test = (task.clone(), skill.eval_starts.clone(), skill.params.max_steps, episodes);
         let open = !self.tested.contains(&test);
         if open {
@@ -124,7 +124,7 @@ impl Solved {
 
 impl Group {
     fn new(plan: &Plan, arms: Vec<usize>, solved: &mut Solved) -> Result<Self, SetupError> {
-        let members: Vec<&Arm> = arms.iter().map(|arm| &plan.arms[*arm]).collect();
+        let members: Vec<&ArmPlan> = arms.iter().map(|arm| &plan.arms[*arm]).collect();
         let first = members[0];
         let world = plan.world_of(first);
         let (shape, mut shared) = lay_out(&members, world)?;
@@ -207,7 +207,7 @@ impl Group {
     }
 }
 
-fn lay_out(members: &[&Arm], world: &crate::world::World) -> Result<(Shape, CohortData), ShapeError> {
+fn lay_out(members: &[&ArmPlan], world: &crate::world::World) -> Result<(Shape, CohortData), ShapeError> {
     let mut shape = Shape::new(world, members)?;
     let shared = CohortData {
         floor: SegmentGrid::new(&shape.tables.plan, &shape.tables.words),
@@ -219,7 +219,7 @@ fn lay_out(members: &[&Arm], world: &crate::world::World) -> Result<(Shape, Coho
 }
 
 /// What the teacher plans an arm's skills with.
-pub fn terms_of(arm: &Arm) -> Terms {
+pub fn terms_of(arm: &ArmPlan) -> Terms {
     Terms {
         noise: arm.noise,
         beside: arm.skills.last().map_or((0, 0), |root| (root.params.beside_near, root.params.beside_far)),
@@ -230,13 +230,13 @@ pub fn terms_of(arm: &Arm) -> Terms {
     }
 }
 
-fn task_of(arm: &Arm, skill: &Skill) -> Task {
+fn task_of(arm: &ArmPlan, skill: &SkillPlan) -> Task {
     let terms = terms_of(arm);
     Task { world: arm.world, terms, reward: skill.params.reward, ends: skill.goal, actions: skill.actions() }
 }
 
 /// A skill's shape as the planner drives it: over actions.
-fn driven(plan: &SkillShape, skill: &Skill) -> SkillShape {
+fn driven(plan: &SkillShape, skill: &SkillPlan) -> SkillShape {
     let mut driven = *plan;
     if skill.is_high() {
         let actions = skill.actions();

@@ -10,7 +10,7 @@ use super::batch_group::{Group, LearnerId};
 use super::pretraining::group_of;
 use super::schedule::Stage;
 use crate::backend::{Backend, BackendError, Stop};
-use crate::config::plan::{Plan, Skill};
+use crate::config::plan::{Plan, SkillPlan};
 use crate::layout::choices::BACKUP_DECISIONS;
 use crate::layout::{LearnerState, ROW_WORDS, SkillShape};
 use std::time::{Duration, Instant};
@@ -180,7 +180,7 @@ fn transition(shape: &SkillShape) -> f64 {
 }
 
 /// Mean steps of a trial.
-fn length(skill: &Skill) -> f64 {
+fn length(skill: &SkillPlan) -> f64 {
     f64::from(skill.params.max_steps) * if skill.goal == 0 { 1.0 } else { LENGTH }
 }
 
@@ -204,7 +204,7 @@ fn work_of(plan: &Plan, groups: &[Group], arm: usize, skills: std::ops::Range<us
 }
 
 /// Tests of a skill.
-fn tests(skill: &Skill) -> u32 {
+fn tests(skill: &SkillPlan) -> u32 {
     skill.eval_at.iter().filter(|at| **at < skill.params.trials).count() as u32 + 1
 }
 

@@ -2,7 +2,7 @@
 //!
 //! Different arms may have the same number: equality is always checked. What is left out here only costs time.
 
-use crate::config::plan::{Arm, Skill};
+use crate::config::plan::{ArmPlan, SkillPlan};
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -29,7 +29,7 @@ pub(super) fn classes(
 }
 
 /// Of the tasks of an arm's skills, whatever they are learned with.
-pub(super) fn of_tasks(arm: &Arm) -> u64 {
+pub(super) fn of_tasks(arm: &ArmPlan) -> u64 {
     let mut hasher = circumstances(arm);
     for skill in &arm.skills {
         task(skill, &mut hasher);
@@ -38,7 +38,7 @@ pub(super) fn of_tasks(arm: &Arm) -> u64 {
 }
 
 /// Of everything below an arm's root.
-pub(super) fn of_stem(arm: &Arm) -> u64 {
+pub(super) fn of_stem(arm: &ArmPlan) -> u64 {
     let mut hasher = circumstances(arm);
     for skill in &arm.skills[..arm.skills.len() - 1] {
         task(skill, &mut hasher);
@@ -47,7 +47,7 @@ pub(super) fn of_stem(arm: &Arm) -> u64 {
     hasher.finish()
 }
 
-fn circumstances(arm: &Arm) -> DefaultHasher {
+fn circumstances(arm: &ArmPlan) -> DefaultHasher {
     let mut hasher = DefaultHasher::new();
     let (noise, teacher) = (arm.noise, arm.teacher);
     (arm.world, arm.skills.len(), noise.kind, teacher.lessons, teacher.eval_episodes).hash(&mut hasher);
@@ -56,7 +56,7 @@ fn circumstances(arm: &Arm) -> DefaultHasher {
     hasher
 }
 
-fn task(skill: &Skill, hasher: &mut DefaultHasher) {
+fn task(skill: &SkillPlan, hasher: &mut DefaultHasher) {
     (&skill.name, skill.goal, skill.params.max_steps, skill.params.shared_net).hash(hasher);
     singles(&skill.params.reward, hasher);
     for (region, share) in &skill.starts {
@@ -65,7 +65,7 @@ fn task(skill: &Skill, hasher: &mut DefaultHasher) {
     }
 }
 
-fn numbers(skill: &Skill, hasher: &mut DefaultHasher) {
+fn numbers(skill: &SkillPlan, hasher: &mut DefaultHasher) {
     bytemuck::bytes_of(&skill.params).hash(hasher);
 }
 

@@ -3,7 +3,7 @@
 
 use super::batch_group::{Group, LearnerId, alike};
 use super::fingerprint::{classes, of_stem, of_tasks};
-use crate::config::plan::{Arm, Plan};
+use crate::config::plan::{ArmPlan, Plan};
 
 /// Arms whose learners branch from one stem, or that have none and are of one group.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -28,8 +28,8 @@ pub fn families(plan: &Plan) -> Vec<Family> {
     families.into_iter().map(|arms| Family { stem: stem(arms[0]), arms }).collect()
 }
 
-fn related(a: &Arm, b: &Arm) -> bool {
-    let below = |arm: &Arm| arm.skills.len() - 1;
+fn related(a: &ArmPlan, b: &ArmPlan) -> bool {
+    let below = |arm: &ArmPlan| arm.skills.len() - 1;
     (a.world, a.noise, a.teacher) == (b.world, b.noise, b.teacher) && a.skills[..below(a)] == b.skills[..below(b)]
 }
 

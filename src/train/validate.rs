@@ -3,7 +3,7 @@
 use super::batch::weight_count;
 use super::batch_group::{Group, LearnerId};
 use super::result::{LearnerResult, TestResult};
-use crate::config::plan::{Arm, Plan};
+use crate::config::plan::{ArmPlan, Plan};
 use crate::layout::{MAX_CHILDREN, ROW_WORDS};
 
 /// Whether the plan has such a learner.
@@ -12,7 +12,7 @@ pub(super) fn is_known(plan: &Plan, id: LearnerId) -> bool {
 }
 
 /// Whether the tests are of an arm's skills, in circumstances and rooms that there are.
-pub(super) fn are_tests(plan: &Plan, arm: &Arm, tests: &[TestResult]) -> bool {
+pub(super) fn are_tests(plan: &Plan, arm: &ArmPlan, tests: &[TestResult]) -> bool {
     tests.iter().all(|test| {
         let variant = (test.variant as usize).checked_sub(1);
         let alteration = variant.map(|number| plan.alterations.get(number));
@@ -26,7 +26,7 @@ pub(super) fn are_tests(plan: &Plan, arm: &Arm, tests: &[TestResult]) -> bool {
 }
 
 /// Whether the rows of the trial table are whole and of an arm's skills.
-pub(super) fn are_rows(arm: &Arm, rows: &[u32]) -> bool {
+pub(super) fn are_rows(arm: &ArmPlan, rows: &[u32]) -> bool {
     let (whole, rest) = rows.as_chunks::<ROW_WORDS>();
     rest.is_empty() && whole.iter().all(|row| (row[0] as usize) < arm.skills.len())
 }

@@ -5,7 +5,7 @@ use bytemuck::Zeroable;
 use glam::Vec2;
 use skilltree::backend::cpu::CpuBackend;
 use skilltree::backend::{Backend, Test};
-use skilltree::config::plan::{Plan, Skill};
+use skilltree::config::plan::{Plan, SkillPlan};
 use skilltree::env::workgroup::Scratch;
 use skilltree::layout::{Agent, Episode};
 use skilltree::policy::hierarchy::place;
@@ -30,7 +30,7 @@ fn planned() -> (Plan, Group) {
     (plan, group)
 }
 
-fn planner(plan: &Plan, group: &Group, skill: &Skill) -> Planner {
+fn planner(plan: &Plan, group: &Group, skill: &SkillPlan) -> Planner {
     Planner::new(plan.world(), &group.shared, skill, &terms_of(&plan.arms[0]))
 }
 

@@ -5,7 +5,7 @@ use super::persistence::{Choice, Chooser, Reason, Rules, Set, members};
 use bytemuck::Zeroable;
 use skilltree::backend::cpu::CpuBackend;
 use skilltree::backend::{Backend, Cohort, Stop, Test};
-use skilltree::config::plan::{Child, Plan, Skill, Threshold};
+use skilltree::config::plan::{Child, Plan, SkillPlan, Threshold};
 use skilltree::kernels::evaluate::{STATE_ACHIEVED, evaluate};
 use skilltree::layout::phase::{PHASE_DONE, PHASE_REPLAY, PHASE_TEACH};
 use skilltree::layout::{Dispatch, Episode, LANES, LESSON_HEADER, RECORD_WORDS, ROW_WORDS, VALUE_WORD};
@@ -346,7 +346,7 @@ fn remembered_trials_follow_the_rules() {
 }
 
 /// What `leave` is worth while nobody has asked it for a step: the best of its values, given the worth of `pass-door`.
-fn idle_worth(tree: &Tree64<'_>, skills: &[Skill], record: &[u32]) -> f64 {
+fn idle_worth(tree: &Tree64<'_>, skills: &[SkillPlan], record: &[u32]) -> f64 {
     let leave = skills.iter().position(|skill| skill.name == "leave").expect("the skill");
     let worths = tree.worths(leave, record);
     let mut own = record.to_vec();

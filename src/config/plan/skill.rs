@@ -4,7 +4,7 @@ use crate::layout::{Action, HyperParams, Input};
 
 /// A skill as defined in TOML.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Skill {
+pub struct SkillPlan {
     /// Key of the skill in the config.
     pub name: String,
     /// The net's inputs, in order.
@@ -29,7 +29,7 @@ pub struct Skill {
     pub params: HyperParams,
 }
 
-impl Skill {
+impl SkillPlan {
     /// Whether the children are skills.
     pub fn is_high(&self) -> bool {
         self.children.iter().any(|child| matches!(child, Child::Skill(_)))

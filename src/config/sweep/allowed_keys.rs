@@ -2,7 +2,7 @@
 
 use crate::config::keys::{self, Allowed};
 use crate::config::set;
-use crate::toml::document::{Node, Origin};
+use crate::toml::document::{Node, SourceSpan};
 use crate::toml::error::{ConfigError, nearest, suggest};
 
 /// First parts of the keys that arms have of their own.
@@ -16,11 +16,11 @@ const MEMBERS: [(&str, Allowed); 3] = [
 
 /// The names that paths are made of.
 #[derive(Debug)]
-pub(super) struct Names<'a> {
+pub(super) struct AxisNames<'a> {
     skills: Vec<&'a str>,
 }
 
-impl<'a> Names<'a> {
+impl<'a> AxisNames<'a> {
     /// From the complete config.
     pub(super) fn new(base: &'a Node) -> Self {
         Self { skills: set::names(base, "skill") }
@@ -42,7 +42,7 @@ impl<'a> Names<'a> {
     ///
     /// # Errors
     /// If there is no such key, or if it is the same at all points.
-    pub(super) fn allowed(&self, path: &[&str], origin: &Origin) -> Result<Allowed, ConfigError> {
+    pub(super) fn allowed(&self, path: &[&str], origin: &SourceSpan) -> Result<Allowed, ConfigError> {
         let key = path.join(".");
         if let ["skill", skill, ..] = path
             && !self.skills.contains(skill)
