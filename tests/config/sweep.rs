@@ -1,8 +1,6 @@
 //! Sweeps in configs: which arms they make, how they are laid over the rest, and a good message for every mistake.
 
-mod plans;
-
-use plans::{attempt_files, read_again, with};
+use super::plans::{attempt_files, read_again, with};
 use skilltree::config::plan::{ArmPlan, AxisValue, Design, Plan, Scale, Threshold};
 use skilltree::config::{ConfigError, Overrides, Place, load};
 use std::collections::BTreeSet;

@@ -40,3 +40,30 @@ pub(crate) fn read_again(plan: &Plan) {
     let again = attempt_files(&files).0.unwrap_or_else(|error| panic!("{error}\n{}", plan.resolved));
     same(plan, &again);
 }
+
+pub(crate) const FILE: &str = "\
+title = 'test'
+world = 'world.toml'
+[learning]
+learning_rate = 0.01
+[skill.dock]
+inputs = ['sonar', 'bumpers']
+reward = { docked = 100 }
+starts = 'anywhere'
+goal = ['docked']
+[arm.one]
+[arm.two]
+learning.gamma = 0.5
+";
+pub(crate) const WORLD: &str = "\
+size = [200, 200]
+rooms = [{ name = 'A', box = [0, 0, 200, 200] }]
+charger = { box = [0, 0, 24, 24] }
+light = { at = [12, 12], range = 100 }
+places = { L1 = [100, 100, 0] }
+regions = [{ name = 'sliver', box = [0, 50, 10, 200] }]
+";
+
+pub(crate) fn attempt(config: &str, world: &str) -> (Result<Plan, ConfigError>, PathBuf) {
+    attempt_files(&[("config.toml", config), ("world.toml", world)])
+}

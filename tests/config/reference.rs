@@ -1,15 +1,11 @@
 //! The reference of every key, the JSON schemas of editors, old names, and configs that are read from memory.
 
+use super::plans::with;
 use serde_json::Value;
 use skilltree::config::keys;
 use skilltree::config::reference::{config_schema, text, world_schema};
 use skilltree::config::{MemoryFiles, Overrides, Place, load, load_from};
 use std::path::{Path, PathBuf};
-
-/// What `--set` says.
-fn with(set: &str) -> Overrides {
-    Overrides { set: vec![set.to_owned()], ..Overrides::default() }
-}
 
 fn configs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("configs")
@@ -140,7 +136,7 @@ fn an_old_name_is_refused_with_the_new_one() {
         ("skill.dock.policy=ordered", "`ordered` of `skill.dock.policy` has", "write \"fixed-priority\""),
         ("sweep.skill.dock.policy=['random', 'ordered']", "`ordered` of", "write \"fixed-priority\""),
     ] {
-        let error = load(&configs().join("docking.toml"), &with(set)).expect_err(set);
+        let error = load(&configs().join("docking.toml"), &with(&[set])).expect_err(set);
         println!("{error}\n");
         assert!(error.message().contains(message) && error.hint() == hint, "{error}");
         assert_eq!(error.place(), &Place::Argument(format!("--set {set}")));
