@@ -62,7 +62,8 @@ impl Experiment {
 
     /// Training trials of all learners together.
     pub fn trials(&self) -> u64 {
-        let trials: u64 = self.plan.arms.iter().flat_map(|arm| &arm.skills).map(|skill| u64::from(skill.trials)).sum();
+        let trials: u64 =
+            self.plan.arms.iter().flat_map(|arm| &arm.skills).map(|skill| u64::from(skill.params.trials)).sum();
         trials * self.plan.seeds.len() as u64
     }
 

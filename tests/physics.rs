@@ -7,7 +7,6 @@ use oracle::{Field, P, Written, ahead, office, stream};
 use skilltree::backend::Backend;
 use skilltree::backend::cpu::CpuBackend;
 use skilltree::backend::parity::{self, UNWRITTEN};
-use skilltree::config::plan::{Noise, NoiseKind};
 use skilltree::env::contact::{bumpers, sweep};
 use skilltree::env::events::{passed_door, room_of};
 use skilltree::env::light::in_sight;
@@ -15,6 +14,8 @@ use skilltree::env::motion::{BACKWARD, COLLISION, DOCKED, FORWARD, Moved, NO_ACT
 use skilltree::env::segments::{LISTED_TRAVEL, SegmentGrid};
 use skilltree::env::sonar::{ranges, rays};
 use skilltree::env::workgroup::CohortData;
+use skilltree::layout::Noise;
+use skilltree::layout::choices::{NOISE_GAUSSIAN, NOISE_UNIFORM};
 use skilltree::layout::{BASE_WORDS, RAYS, Robot};
 use skilltree::math::functions::sin_cos;
 use skilltree::math::rng::place_of;
@@ -677,12 +678,12 @@ fn crowd(action: u32, noise: &Noise, count: u32) -> Vec<Robot> {
 #[test]
 fn noise_has_the_stated_mean_deviation_and_bounds() {
     let count = 60_000;
-    for kind in [NoiseKind::Gaussian, NoiseKind::Uniform] {
+    for kind in [NOISE_GAUSSIAN, NOISE_UNIFORM] {
         let noise = Noise { kind, actuator: 0.08, sonar: 0.10, light: 0.0, compass: 2.865 };
         // The bell has unit deviation and ends at sqrt(12) of them; flat noise has its amount as half-width.
         let (unit, end) = match kind {
-            NoiseKind::Gaussian => (1.0, 12.0_f64.sqrt() + 1.0e-3),
-            NoiseKind::Uniform => (1.0 / 3.0_f64.sqrt(), 1.0 + 1.0e-4),
+            NOISE_GAUSSIAN => (1.0, 12.0_f64.sqrt() + 1.0e-3),
+            _ => (1.0 / 3.0_f64.sqrt(), 1.0 + 1.0e-4),
         };
         let forward = crowd(FORWARD, &noise, count);
         let slips: Vec<f64> = forward.iter().map(|r| (f64::from(r.x) - 60.0) / 12.0 - 1.0).collect();
@@ -722,10 +723,10 @@ fn noise_has_the_stated_mean_deviation_and_bounds() {
 #[test]
 fn a_robot_among_others_is_the_robot_alone() {
     let place = &offices()[0];
-    let noise = Noise { kind: NoiseKind::Gaussian, actuator: 0.08, sonar: 0.10, light: 0.10, compass: 2.865 };
+    let noise = Noise { kind: NOISE_GAUSSIAN, actuator: 0.08, sonar: 0.10, light: 0.10, compass: 2.865 };
     let mut next = stream(31);
     let mut robot = |number: u32| {
-        let kind = if number % 5 == 1 { NoiseKind::Uniform } else { NoiseKind::Gaussian };
+        let kind = if number % 5 == 1 { NOISE_UNIFORM } else { NOISE_GAUSSIAN };
         let mut robot = robot_at(place.pose(&mut next, 0.0), &Noise { kind, ..noise }, 7, number);
         robot.action = if number % 7 == 6 { NO_ACTION } else { number % 6 };
         robot.record = [UNWRITTEN; BASE_WORDS];

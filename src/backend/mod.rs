@@ -166,7 +166,7 @@ pub enum BackendError {
     /// Not even one learner fits.
     #[error(
         "one learner takes {:.1} MB, and there is room for {:.1} MB\nhint: end other programs, or make learners smaller: \
-         fewer lessons in `learning.memory`, less `max_steps`, fewer skills",
+         fewer lessons in `learning.replay_capacity`, less `max_steps`, fewer skills",
         *bytes as f64 / 1e6,
         *room as f64 / 1e6
     )]

@@ -8,7 +8,7 @@ use crate::config::plan::Action;
 use crate::config::{Overrides, load};
 use crate::env::motion::{COLLISION, DOCKED};
 use crate::layout::Robot;
-use crate::train::observation::{SensorValues, SILENT, floor_only, robot_at};
+use crate::train::observation::{SILENT, SensorValues, floor_only, robot_at};
 use crate::world::{Pose, World};
 use clap::ValueEnum;
 use glam::Vec2;

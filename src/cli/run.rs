@@ -23,7 +23,7 @@ use std::time::{Duration, Instant};
     "  skilltree run configs/quick.toml\n",
     "  skilltree run configs/docking.toml --seeds 0..256 --out runs/docking-256\n",
     "  skilltree run configs/docking.toml --set 'arms=[\"taught-adam\"]'\n",
-    "  skilltree run configs/docking.toml --set learning.rate=0.01 --out runs/fast\n",
+    "  skilltree run configs/docking.toml --set learning.learning_rate=0.01 --out runs/fast\n",
     "  skilltree run configs/thresholds.toml --dry-run\n",
     "  skilltree run configs/sweep.toml --arm taught-adam --point 3 --seeds 1 --out runs/one\n\n",
     "No choice of backend, threads, cohort, iterations or checkpoints changes a byte of the results. A run can be stopped at ",
@@ -43,7 +43,7 @@ pub(super) struct RunArguments {
     /// Runs this point of the sweep only, counted from 0 as in the tables; may be given several times.
     #[arg(long, value_name = "N")]
     point: Vec<u32>,
-    /// Sets a key of the config, such as `learning.rate=0.01`; may be given several times.
+    /// Sets a key of the config, such as `learning.learning_rate=0.01`; may be given several times.
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
     #[command(flatten)]

@@ -7,14 +7,16 @@
 mod macros;
 
 pub mod actions;
+pub mod choices;
 mod codes;
 mod dispatch;
 pub mod events;
 pub mod lengths;
-mod params;
+pub mod params;
 pub mod prelude;
 pub mod purpose;
 mod records;
+pub mod schema;
 pub mod sensors;
 mod shape;
 mod sizes;

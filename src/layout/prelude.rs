@@ -4,7 +4,7 @@ use super::codes::CODES;
 use super::macros::Layout;
 use super::purpose::PURPOSES;
 use super::records::WORDS;
-use super::{actions, dispatch, events, lengths, params, records, sensors, shape, sizes, state, world};
+use super::{actions, choices, dispatch, events, lengths, params, records, sensors, shape, sizes, state, world};
 use std::fmt::Write;
 
 /// How Rust lays out every struct that the shaders share.
@@ -40,7 +40,7 @@ pub fn prelude() -> String {
             let _ = writeln!(text, "const {prefix}_{}: u32 = {}u;", field.to_uppercase(), offset / 4);
         }
     }
-    for (name, code) in [actions::CODES, events::CODES, sensors::CODES].into_iter().flatten() {
+    for (name, code) in [actions::CODES, choices::CODES, events::CODES, sensors::CODES].into_iter().flatten() {
         let _ = writeln!(text, "const {name}: u32 = {code}u;");
     }
     let turns: Vec<String> = actions::ACTION_TURN.iter().map(|degrees| format!("{degrees:?}f")).collect();

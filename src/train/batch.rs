@@ -61,7 +61,7 @@ pub fn pretrain(
 /// Whether some threshold may be learned of this skill.
 fn learned(plan: &Plan, arm: usize, skill: usize) -> bool {
     let skill = &plan.arms[arm].skills[skill];
-    skill.trials > 0 && !skill.planned && skill.mirror.is_none() && skill.ends != 0
+    skill.params.trials > 0 && !skill.oracle && skill.mirror.is_none() && skill.goal != 0
 }
 
 /// Trains and tests the learners, from their pretrained ones where they have them or from where they were saved, and hands
@@ -157,13 +157,13 @@ fn alter(training: &mut TrainLoop<'_>, trained: &Cohort) -> Result<(), Interrupt
         cohort.shared.clone_from(shared);
         for params in &mut cohort.params {
             let Some(noise) = alteration.noise else { continue };
-            params.noise = noise.into();
+            params.noise = noise;
         }
         training.backend.load(cohort)?;
         let test = Evaluation {
             skill: root as u32,
             // The same number as the last test in the world of training: the same random, as far as they go.
-            trials: plan.arms[training.results[0].id.arm].skills[root].trials,
+            trials: plan.arms[training.results[0].id.arm].skills[root].params.trials,
             variant: number as u32 + 1,
             world: &plan.worlds[alteration.world.unwrap_or(arm.world)].world,
         };

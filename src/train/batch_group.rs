@@ -1,10 +1,10 @@
 //! Arms that can train in one cohort: their skills agree in all but numbers, and one teacher serves them.
 
 use crate::backend::Cohort;
-use crate::config::plan::{Arm, Plan, Skill, Threshold};
+use crate::config::plan::{ArmPlan, Plan, SkillPlan, Threshold};
 use crate::env::segments::SegmentGrid;
 use crate::env::workgroup::CohortData;
-use crate::layout::{ELEMENTARY_STEP_WORDS, SkillShape};
+use crate::layout::{ELEMENTARY_STEP_WORDS, HyperParams, SkillShape};
 use crate::teacher::demonstrations::{Demonstration, Teacher, TeacherError, teacher_params};
 use crate::teacher::value_iteration::{PITCH, Planner, Terms};
 use crate::train::allocate::{Shape, ShapeError};
@@ -70,7 +70,7 @@ pub fn group_index(groups: &[BatchGroup], arm: usize) -> usize {
 }
 
 /// Sorts arms into classes with one key each, in the order in which each class shows up first: their indices.
-pub(super) fn classes(arms: &[Arm], key: impl Fn(&Arm) -> String) -> Vec<Vec<usize>> {
+pub(super) fn classes(arms: &[ArmPlan], key: impl Fn(&ArmPlan) -> String) -> Vec<Vec<usize>> {
     let mut classes: Vec<Vec<usize>> = Vec::new();
     let mut known: HashMap<String, usize> = HashMap::new();
     for (index, arm) in arms.iter().enumerate() {
@@ -85,24 +85,27 @@ pub(super) fn classes(arms: &[Arm], key: impl Fn(&Arm) -> String) -> Vec<Vec<usi
 
 /// Text that is equal for arms that differ in nothing but numbers of single learners, which the teacher does not see: all
 /// of the arm with these numbers made the same, so that whatever is new in an arm counts until it is made so here.
-pub(super) fn structure(plan: &Plan, arm: &Arm) -> String {
+pub(super) fn structure(plan: &Plan, arm: &ArmPlan) -> String {
     let any = &plan.arms[0].skills[0];
-    let bare = |skill: &Skill| {
+    let bare = |skill: &SkillPlan| {
         let applicable = skill.applicable.iter().map(|threshold| threshold.map(|_| Threshold::Fixed(0.0))).collect();
-        let bare = Skill {
-            applicable,
-            learning: any.learning.clone(),
-            lessons: 0,
-            trials: 0,
-            tested_at: Vec::new(),
-            choice: any.choice,
-            persistence: any.persistence,
-            ..skill.clone()
+        let own = &skill.params;
+        let params = HyperParams {
+            noise: own.noise,
+            light_decay: own.light_decay,
+            door_decay: own.door_decay,
+            range_decay: own.range_decay,
+            beside_near: own.beside_near,
+            beside_far: own.beside_far,
+            shared_net: own.shared_net,
+            max_steps: own.max_steps,
+            reward: own.reward,
+            ..any.params
         };
-        (bare, skill.learning.shared_net)
+        SkillPlan { params, applicable, eval_at: Vec::new(), ..skill.clone() }
     };
-    let skills: Vec<(Skill, bool)> = arm.skills.iter().map(bare).collect();
-    format!("{:?} {skills:?}", Arm { name: String::new(), point: 0, skills: Vec::new(), ..arm.clone() })
+    let skills: Vec<SkillPlan> = arm.skills.iter().map(bare).collect();
+    format!("{:?}", ArmPlan { name: String::new(), point: 0, skills, ..arm.clone() })
 }
 
 /// Planners, and which of their tests have been made, by the text of the task: arms share most tasks.
@@ -114,16 +117,16 @@ struct Planners {
 
 impl BatchGroup {
     fn new(plan: &Plan, arms: Vec<usize>, planners: &mut Planners) -> Result<Self, SetupError> {
-        let members: Vec<&Arm> = arms.iter().map(|arm| &plan.arms[*arm]).collect();
+        let members: Vec<&ArmPlan> = arms.iter().map(|arm| &plan.arms[*arm]).collect();
         let first = members[0];
         let world = plan.world_of(first);
         let (shape, mut shared) = lay_out(&members, world)?;
         let mut bounds = Vec::new();
         let (params, ..) = shape.learner(first, plan.run_seed, 0);
         for (number, skill) in first.skills.iter().enumerate() {
-            let taught = members.iter().any(|arm| arm.skills[number].lessons > 0);
+            let taught = members.iter().any(|arm| arm.skills[number].params.lessons > 0);
             let terms = terms_of(first);
-            let task = format!("{:?}", (first.world, &terms, skill.reward, skill.ends, skill.actions()));
+            let task = format!("{:?}", (first.world, &terms, skill.params.reward, skill.goal, skill.actions()));
             // A mirror image has nothing of its own to plan.
             if skill.mirror.is_some() {
                 bounds.push(None);
@@ -139,13 +142,13 @@ impl BatchGroup {
                 params: &teacher_params(&params[number]),
                 number: number as u32,
             };
-            let bank = if taught { teacher.bank(skill, first.teacher.bank)? } else { Vec::new() };
-            let test = format!("{:?}", (task, &skill.tests, skill.max_steps, first.teacher.episodes));
-            bounds.push(planners.tested.insert(test).then(|| teacher.tests(first.teacher.episodes)));
-            let table = skill.planned.then(|| planner.table(&shared, params[number].value_scale));
+            let bank = if taught { teacher.bank(skill, first.teacher.lessons)? } else { Vec::new() };
+            let test = format!("{:?}", (task, &skill.eval_starts, skill.params.max_steps, first.teacher.eval_episodes));
+            bounds.push(planners.tested.insert(test).then(|| teacher.tests(first.teacher.eval_episodes)));
+            let table = skill.oracle.then(|| planner.table(&shared, params[number].value_scale));
             let own = &mut shared.skills[number];
             own.bank_offset = shared.bank.len() as u32;
-            own.bank_lessons = if taught { first.teacher.bank } else { 0 };
+            own.bank_lessons = if taught { first.teacher.lessons } else { 0 };
             if let Some(table) = table {
                 own.planned = shared.tables.len() as u32;
                 shared.tables.extend(table);
@@ -196,7 +199,7 @@ impl BatchGroup {
     }
 }
 
-fn lay_out(members: &[&Arm], world: &crate::world::World) -> Result<(Shape, CohortData), ShapeError> {
+fn lay_out(members: &[&ArmPlan], world: &crate::world::World) -> Result<(Shape, CohortData), ShapeError> {
     let mut shape = Shape::new(world, members)?;
     let shared = CohortData {
         floor: SegmentGrid::new(&shape.tables.plan, &shape.tables.words),
@@ -208,10 +211,10 @@ fn lay_out(members: &[&Arm], world: &crate::world::World) -> Result<(Shape, Coho
 }
 
 /// What the teacher plans an arm's skills with.
-pub fn terms_of(arm: &Arm) -> Terms {
+pub fn terms_of(arm: &ArmPlan) -> Terms {
     Terms {
         noise: arm.noise,
-        robot: arm.robot,
+        beside: arm.skills.last().map_or((0, 0), |root| (root.params.beside_near, root.params.beside_far)),
         discount: arm.teacher.discount,
         backward_cost: arm.teacher.backward_cost,
         collision_cost: arm.teacher.collision_cost,
@@ -220,7 +223,7 @@ pub fn terms_of(arm: &Arm) -> Terms {
 }
 
 /// A skill's shape as the planner drives it: over actions.
-fn driven(plan: &SkillShape, skill: &Skill) -> SkillShape {
+fn driven(plan: &SkillShape, skill: &SkillPlan) -> SkillShape {
     let mut driven = *plan;
     if skill.is_high() {
         let actions = skill.actions();

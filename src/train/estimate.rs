@@ -9,7 +9,8 @@
 use super::batch_group::{BatchGroup, LearnerId, group_of};
 use super::schedule::Wave;
 use crate::backend::{Backend, BackendError, Stop};
-use crate::config::plan::{Backup, Plan, Skill};
+use crate::config::plan::{Plan, SkillPlan};
+use crate::layout::choices::BACKUP_DECISIONS;
 use crate::layout::{LearnerState, SkillShape, TRIAL_WORDS};
 use std::time::{Duration, Instant};
 
@@ -157,7 +158,7 @@ fn done(plan: &Plan, groups: &[BatchGroup], ids: &[LearnerId], states: &[Learner
         let shape = &group_of(groups, id.arm).shape.skills;
         // A moment reaches no further than the first skill that has trials.
         let skills = &plan.arms[id.arm].skills;
-        let skill = skills.iter().position(|skill| skill.trials > 0).unwrap_or(0);
+        let skill = skills.iter().position(|skill| skill.params.trials > 0).unwrap_or(0);
         f64::from(state.actions) * step(shape, skill) + f64::from(state.updates) * transition(&shape[skill])
     });
     each.sum()
@@ -178,8 +179,8 @@ fn transition(shape: &SkillShape) -> f64 {
 }
 
 /// Mean steps of a trial.
-fn length(skill: &Skill) -> f64 {
-    f64::from(skill.max_steps) * if skill.ends == 0 { 1.0 } else { LENGTH }
+fn length(skill: &SkillPlan) -> f64 {
+    f64::from(skill.params.max_steps) * if skill.goal == 0 { 1.0 } else { LENGTH }
 }
 
 /// Work of one learner in some of its skills.
@@ -187,14 +188,14 @@ fn work_of(plan: &Plan, groups: &[BatchGroup], arm: usize, skills: std::ops::Ran
     let shape = &group_of(groups, arm).shape.skills;
     let each = skills.map(|number| {
         let skill = &plan.arms[arm].skills[number];
-        let learning = &skill.learning;
-        let taught = if skill.lessons > 0 { learning.taught_replays } else { 0 };
-        let at_decisions = skill.is_high() && learning.backup == Backup::Decisions;
+        let learning = &skill.params;
+        let taught = if skill.params.lessons > 0 { learning.taught_replays } else { 0 };
+        let at_decisions = skill.is_high() && learning.backup == BACKUP_DECISIONS;
         let replays =
-            f64::from(skill.trials) * f64::from(learning.replays + taught) * LEARNED[usize::from(at_decisions)];
+            f64::from(skill.params.trials) * f64::from(learning.replays + taught) * LEARNED[usize::from(at_decisions)];
         // Teachers are quick.
-        let lessons = f64::from(skill.lessons * learning.taught_passes) * 0.5;
-        let acted = f64::from(skill.trials) + f64::from(tests(skill)) * f64::from(plan.evaluate.episodes);
+        let lessons = f64::from(skill.params.lessons * learning.pretrain_epochs) * 0.5;
+        let acted = f64::from(skill.params.trials) + f64::from(tests(skill)) * f64::from(plan.evaluate.episodes);
         let steps = length(skill);
         steps * (acted * step(shape, number) + (replays + lessons) * transition(&shape[number]))
     });
@@ -202,8 +203,8 @@ fn work_of(plan: &Plan, groups: &[BatchGroup], arm: usize, skills: std::ops::Ran
 }
 
 /// Tests of a skill.
-fn tests(skill: &Skill) -> u32 {
-    skill.tested_at.iter().filter(|at| **at < skill.trials).count() as u32 + 1
+fn tests(skill: &SkillPlan) -> u32 {
+    skill.eval_at.iter().filter(|at| **at < skill.params.trials).count() as u32 + 1
 }
 
 /// Bytes that a learner's results take on disk.
@@ -213,9 +214,9 @@ fn disk_of(plan: &Plan, group: &BatchGroup, arm: usize) -> u64 {
     let mut bytes = NET_BYTES[0];
     for (skill, shape) in arm.skills.iter().zip(&group.shape.skills) {
         let tests = u64::from(tests(skill)) * rooms;
-        bytes += u64::from(skill.trials + skill.lessons) * ROW_BYTES[0] + tests * ROW_BYTES[1];
-        if skill.mirror.is_none() && !skill.planned {
-            let weights = u64::from(skill.learning.hidden) * (u64::from(shape.inputs) + 2) + 1;
+        bytes += u64::from(skill.params.trials + skill.params.lessons) * ROW_BYTES[0] + tests * ROW_BYTES[1];
+        if skill.mirror.is_none() && !skill.oracle {
+            let weights = u64::from(skill.params.hidden) * (u64::from(shape.inputs) + 2) + 1;
             bytes += skill.children.len() as u64 * (4 * weights + NET_BYTES[1]);
         }
     }

@@ -1,11 +1,11 @@
 //! What a robot senses, as a person reads it.
 
 use crate::backend::{Backend, BackendError};
-use crate::config::plan::{Noise, NoiseKind};
 use crate::env::motion::NO_ACTION;
 use crate::env::segments::SegmentGrid;
 use crate::env::workgroup::CohortData;
-use crate::layout::{RAYS, Robot};
+use crate::layout::choices::NOISE_GAUSSIAN;
+use crate::layout::{Noise, RAYS, Robot};
 use crate::run_folder::PlaceReading;
 use crate::world::tables::Tables;
 use crate::world::{Pose, World};
@@ -56,13 +56,13 @@ pub fn robot_at(pose: Pose, noise: &Noise, run_seed: u32, robot_seed: u32) -> Ro
         action: NO_ACTION,
         run_seed,
         robot_seed,
-        noise: (*noise).into(),
+        noise: *noise,
         ..Robot::zeroed()
     }
 }
 
 /// No noise at all.
-pub const SILENT: Noise = Noise { kind: NoiseKind::Gaussian, actuator: 0.0, sonar: 0.0, light: 0.0, compass: 0.0 };
+pub const SILENT: Noise = Noise { kind: NOISE_GAUSSIAN, actuator: 0.0, sonar: 0.0, light: 0.0, compass: 0.0 };
 
 /// What a robot senses at the world's named places, without noise.
 ///

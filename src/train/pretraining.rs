@@ -5,7 +5,7 @@ use super::batch_group::{BatchGroup, LearnerId, classes, group_of, structure};
 use super::codec::{json, pod, record};
 use super::result::TestResult;
 use super::thresholds::Fit;
-use crate::config::plan::{Arm, Plan};
+use crate::config::plan::{ArmPlan, Plan};
 use crate::layout::LearnerState;
 use crate::run_folder::Divergence;
 use serde::{Deserialize, Serialize};
@@ -53,10 +53,10 @@ pub fn shared_skills(plan: &Plan) -> Vec<SharedSkills> {
 }
 
 /// Text that is equal for arms whose learners are the same until the root begins: all of the arm but its root.
-fn below_root(plan: &Plan, arm: &Arm) -> String {
+fn below_root(plan: &Plan, arm: &ArmPlan) -> String {
     match arm.skills.split_last() {
         Some((_, below)) if !below.is_empty() => {
-            format!("{:?}", Arm { name: String::new(), point: 0, skills: below.to_vec(), ..arm.clone() })
+            format!("{:?}", ArmPlan { name: String::new(), point: 0, skills: below.to_vec(), ..arm.clone() })
         }
         _ => structure(plan, arm),
     }

@@ -224,7 +224,7 @@ impl Run<'_> {
         let mut others = self.lacking(shared);
         others.retain(|id| !learners.contains(id));
         let of = |id: &LearnerId| trials_of(&plan.arms[id.arm]);
-        let of_root = |id: &LearnerId| plan.arms[id.arm].skills.last().map_or(0, |root| u64::from(root.trials));
+        let of_root = |id: &LearnerId| plan.arms[id.arm].skills.last().map_or(0, |root| u64::from(root.params.trials));
         let before = self.finished + others.iter().map(|id| of(id) - of_root(id)).sum::<u64>();
         let (backend, mut callbacks) = self.watch(shared, before, (1, 1));
         let results = train(plan, group, learners, &pretrained, saved, backend, &mut callbacks)?;

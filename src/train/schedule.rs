@@ -6,7 +6,7 @@
 
 use super::batch_group::{BatchGroup, LearnerId, group_index};
 use super::pretraining::{SharedSkills, shared_skills};
-use crate::config::plan::{Arm, Plan};
+use crate::config::plan::{ArmPlan, Plan};
 use std::collections::BTreeMap;
 
 /// Cohorts that go on from the same pretrained learners.
@@ -62,8 +62,8 @@ pub fn going_on<E>(
 }
 
 /// Trials of all skills of an arm.
-pub(super) fn trials_of(arm: &Arm) -> u64 {
-    arm.skills.iter().map(|skill| u64::from(skill.trials)).sum()
+pub(super) fn trials_of(arm: &ArmPlan) -> u64 {
+    arm.skills.iter().map(|skill| u64::from(skill.params.trials)).sum()
 }
 
 fn cohorts(
@@ -77,7 +77,7 @@ fn cohorts(
     // Tests under alterations are numbered by the root's trials, all learners of a cohort at once.
     let trials = |arm: usize| match plan.alterations[..] {
         [] => 0,
-        _ => plan.arms[arm].skills.last().map_or(0, |root| root.trials),
+        _ => plan.arms[arm].skills.last().map_or(0, |root| root.params.trials),
     };
     let mut alike: BTreeMap<(usize, u32), Vec<LearnerId>> = BTreeMap::new();
     for arm in &shared.arms {

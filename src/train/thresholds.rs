@@ -105,8 +105,8 @@ pub fn fit(cohort: &Cohort, learner: usize, skill: usize) -> Fit {
     let params = &cohort.params[learner * cohort.skills..][..cohort.skills];
     let nets = &cohort.nets[learner * cohort.nets_stride..][..cohort.nets_stride];
     let mut lessons = cohort.lessons[learner * cohort.lessons_stride..][..cohort.lessons_stride].to_vec();
-    let HyperParams { trials, memory, .. } = params[skill];
-    let kept = trials.min(memory);
+    let HyperParams { trials, replay_capacity, .. } = params[skill];
+    let kept = trials.min(replay_capacity);
     let mut group = Workgroup {
         nets: Nets::Read(nets),
         lessons: &mut lessons,
@@ -115,7 +115,7 @@ pub fn fit(cohort: &Cohort, learner: usize, skill: usize) -> Fit {
     };
     let mut seen = Vec::new();
     for age in 0..kept.div_ceil(2) {
-        let slot = (trials - 1 - age) % memory;
+        let slot = (trials - 1 - age) % replay_capacity;
         group.state.replay_lesson = plan.memory_offset + slot * plan.lesson_stride;
         let achieved = group.lesson_word(LESSON_END) == TERMINATED;
         for step in 0..group.lesson_word(LESSON_STEPS) {

@@ -158,8 +158,8 @@ fn test_points(plan: &Plan, learners: &[LearnerId], skill: usize) -> Vec<u32> {
     let mut points = Vec::new();
     for id in learners {
         let own = &plan.arms[id.arm].skills[skill];
-        points.extend(own.tested_at.iter().copied().filter(|point| *point <= own.trials));
-        points.push(own.trials);
+        points.extend(own.eval_at.iter().copied().filter(|point| *point <= own.params.trials));
+        points.push(own.params.trials);
     }
     points.sort_unstable();
     points.dedup();
@@ -168,13 +168,13 @@ fn test_points(plan: &Plan, learners: &[LearnerId], skill: usize) -> Vec<u32> {
 
 fn tested_at(plan: &Plan, id: LearnerId, skill: usize, point: u32) -> bool {
     let own = &plan.arms[id.arm].skills[skill];
-    point == own.trials || (point < own.trials && own.tested_at.contains(&point))
+    point == own.params.trials || (point < own.params.trials && own.eval_at.contains(&point))
 }
 
 /// Trials that a learner has finished, over all skills.
 fn trials_of(plan: &Plan, id: LearnerId, state: &LearnerState) -> u64 {
     let skills = &plan.arms[id.arm].skills;
-    let before: u32 = skills.iter().take(state.skill as usize).map(|skill| skill.trials).sum();
+    let before: u32 = skills.iter().take(state.skill as usize).map(|skill| skill.params.trials).sum();
     u64::from(before + state.trial)
 }
 

@@ -5,7 +5,7 @@ use super::batch_group::{BatchGroup, LearnerId, group_of};
 use super::checkpoint::CohortState;
 use super::pretraining::{Pretrained, Pretraining};
 use super::result::{LearnerResult, TestResult};
-use crate::config::plan::{Arm, Plan};
+use crate::config::plan::{ArmPlan, Plan};
 use crate::layout::{MAX_CHILDREN, TRIAL_WORDS};
 
 /// Whether the plan has such a learner.
@@ -60,7 +60,7 @@ pub(super) fn is_pretraining(plan: &Plan, groups: &[BatchGroup], pretraining: &P
 }
 
 /// Whether the tests are of an arm's skills, in circumstances and rooms that there are.
-fn are_tests(plan: &Plan, arm: &Arm, tests: &[TestResult]) -> bool {
+fn are_tests(plan: &Plan, arm: &ArmPlan, tests: &[TestResult]) -> bool {
     tests.iter().all(|test| {
         let variant = (test.variant as usize).checked_sub(1);
         let alteration = variant.map(|number| plan.alterations.get(number));
@@ -74,7 +74,7 @@ fn are_tests(plan: &Plan, arm: &Arm, tests: &[TestResult]) -> bool {
 }
 
 /// Whether the rows of the trial table are whole and of an arm's skills.
-fn are_rows(arm: &Arm, rows: &[u32]) -> bool {
+fn are_rows(arm: &ArmPlan, rows: &[u32]) -> bool {
     let (whole, rest) = rows.as_chunks::<TRIAL_WORDS>();
     rest.is_empty() && whole.iter().all(|row| (row[0] as usize) < arm.skills.len())
 }

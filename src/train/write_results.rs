@@ -175,10 +175,10 @@ impl Results<'_> {
         let mut skills = Vec::new();
         for (skill, plan) in arm.skills.iter().zip(&shape.skills) {
             // A mirror image has no nets of its own, nor has what the planner decides.
-            if skill.mirror.is_some() || skill.planned {
+            if skill.mirror.is_some() || skill.oracle {
                 continue;
             }
-            let hidden = skill.learning.hidden as usize;
+            let hidden = skill.params.hidden as usize;
             let inputs = plan.inputs as usize;
             let outputs = plan.outputs as usize;
             let mut written = Vec::new();

@@ -91,8 +91,8 @@ pub(crate) fn plan(seeds: &str) -> Plan {
         "learning.replays=3",
         "evaluate.at=[0, 2]",
         "evaluate.episodes=2",
-        "teacher.episodes=2",
-        "teacher.bank=16",
+        "teacher.eval_episodes=2",
+        "teacher.lessons=16",
     ];
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/docking.toml");
     let set = set.iter().map(|key| (*key).to_owned()).collect();

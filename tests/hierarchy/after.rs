@@ -42,11 +42,11 @@ fn seen(plan: &Plan, cohort: &Cohort, learner: usize, skill: usize) -> Vec<(f64,
     let (own, shape) = (&plan.arms[0].skills[skill], &cohort.shared.skills[skill]);
     let nets = Nets64::of(&cohort.nets[learner * cohort.nets_stride..][..cohort.nets_stride], shape);
     let memory = &cohort.lessons[learner * cohort.lessons_stride + shape.memory_offset as usize..];
-    let kept = own.trials.min(own.learning.memory);
-    let latest = (0..own.trials).rev().take(kept.div_ceil(2) as usize);
+    let kept = own.params.trials.min(own.params.replay_capacity);
+    let latest = (0..own.params.trials).rev().take(kept.div_ceil(2) as usize);
     let mut seen = Vec::new();
     for trial in latest {
-        let slot = trial % own.learning.memory;
+        let slot = trial % own.params.replay_capacity;
         let lesson = &memory[(slot * shape.lesson_stride) as usize..][..shape.lesson_stride as usize];
         for record in lesson[LESSON_HEADER..].chunks(shape.record_words as usize).take(lesson[0] as usize) {
             seen.push((most(nets.values(&inputs64(own, 2, record))), lesson[1] == ENDED));
@@ -95,7 +95,7 @@ fn learned_thresholds_are_those_of_a_direct_fit() {
     let set = [
         "skill.go-home.applicable={ dock = 'learned(0.7)', leave = 'learned' }",
         "skill.go-home.applicability=true",
-        "skill.dock.learning={ memory = 30 }",
+        "skill.dock.learning={ replay_capacity = 30 }",
         "skill.go-home.trials=12",
         "seeds='0..3'",
     ];
@@ -192,8 +192,8 @@ fn alterations_test_what_was_learned_elsewhere() {
     let moved = folder.path().join("moved.toml");
     std::fs::write(&moved, plain.replace("[0, 30, 20, 70]", "[136, 30, 156, 70]")).expect("a file");
     let text = format!(
-        "[alter.same]\nnoise = {{}}\n[alter.loud]\nnoise = {{ sonar = 0.5, compass = 90.0, kind = 'uniform' }}\n\
-         [alter.moved]\nworld = {moved:?}\nnoise = {{ light = 0.0 }}\n"
+        "[transfer.same]\nnoise = {{}}\n[transfer.loud]\nnoise = {{ sonar = 0.5, compass = 90.0, kind = 'uniform' }}\n\
+         [transfer.moved]\nworld = {moved:?}\nnoise = {{ light = 0.0 }}\n"
     );
     let plan = short(&text, &["evaluate.episodes=30", "seeds='0..2'"]);
     let group = only_group(&plan);

@@ -37,7 +37,7 @@ pub(crate) const ARMS: &str = r#"
     trials = 9
     [arm.shared-net.skill.go-home.learning]
     shared_net = true
-    memory = 5
+    replay_capacity = 5
     [arm.other-dock.skill.dock.learning]
     gamma = 0.8
     [arm.leave]
@@ -53,12 +53,12 @@ pub(crate) fn short(arms: &str, set: &[&str]) -> Plan {
         "skill.follow-right.trials=4",
         "skill.leave.trials=7",
         "skill.go-home.trials=8",
-        "skill.leave.learning.mean_age=3.0",
+        "skill.leave.learning.replay_mean_age=3.0",
         "skill.go-home.learning.replays=20",
-        "learning.taught_passes=3",
+        "learning.pretrain_epochs=3",
         "evaluate.at=[0, 3]",
         "evaluate.episodes=5",
-        "teacher.episodes=3",
+        "teacher.eval_episodes=3",
     ];
     home(arms, &[cuts.as_slice(), set].concat())
 }

@@ -53,7 +53,7 @@ fn attempt(
 #[test]
 fn a_tree_that_is_stopped_at_every_turn_leaves_the_same() {
     let altered =
-        format!("{ARMS}\n[alter.loud]\nnoise = {{ sonar = 0.5 }}\n[alter.still]\nnoise = {{ sonar = 0.0 }}\n");
+        format!("{ARMS}\n[transfer.loud]\nnoise = {{ sonar = 0.5 }}\n[transfer.still]\nnoise = {{ sonar = 0.0 }}\n");
     let plan = short(&altered, &["seeds='0..2'"]);
     let all = groups(&plan).unwrap_or_else(|error| panic!("{error}"));
     let parent = TempDir::new().expect("a folder");

@@ -61,8 +61,8 @@ fn everything(dir: &Path) {
     }
     let config = concat!(
         "title = \"A <tree>\"\n",
-        "[alter.easy]\nworld = \"worlds/easy.toml\"\n",
-        "[alter.noise-double]\nnoise = { sonar = 0.2 }\n"
+        "[transfer.easy]\nworld = \"worlds/easy.toml\"\n",
+        "[transfer.noise-double]\nnoise = { sonar = 0.2 }\n"
     );
     let flat = Trajectory { arm: "monolithic".into(), achieved: false, world: "worlds/easy.toml".into(), ..example() };
     let third = Trajectory { arm: "no-persistence".into(), ..example() };

@@ -18,8 +18,8 @@ const CUTS: [&str; 7] = [
     "skill.dock.trials=2",
     "evaluate.at=[0, 2]",
     "evaluate.episodes=3",
-    "teacher.episodes=4",
-    "teacher.bank=16",
+    "teacher.eval_episodes=4",
+    "teacher.lessons=16",
 ];
 
 /// An experiment that is ready to run.

@@ -87,7 +87,7 @@ pub(crate) fn grid(axes: Vec<Axis>) -> Sweep {
 pub(crate) fn thresholds() -> Sweep {
     grid(vec![
         axis("skill.recharge.applicable.dock", "dock threshold", Scale::Log, &[0.01, 0.02, 0.05, 0.1, 0.2, 0.5]),
-        axis("learning.rate", "rate", Scale::Linear, &[0.1, 0.2, 0.3, 0.4, 0.5]),
+        axis("learning.learning_rate", "rate", Scale::Linear, &[0.1, 0.2, 0.3, 0.4, 0.5]),
     ])
 }
 

@@ -93,7 +93,12 @@ fn random_points_are_put_into_classes() {
     let sweep = Sweep {
         design: Design::Random,
         axes: vec![
-            axis("learning.rate", "rate", Scale::Log, &ascending(values.iter().map(|point| point.0).collect())),
+            axis(
+                "learning.learning_rate",
+                "rate",
+                Scale::Log,
+                &ascending(values.iter().map(|point| point.0).collect()),
+            ),
             axis("learning.lambda", "lambda", Scale::Linear, &ascending(values.iter().map(|point| point.1).collect())),
         ],
         points: values.iter().map(|(a, b)| vec![AxisValue::Number(*a), AxisValue::Number(*b)]).collect(),

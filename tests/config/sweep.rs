@@ -1,9 +1,7 @@
 //! Sweeps in configs: which arms they make, how they are laid over the rest, and a good message for every mistake.
 
-mod plans;
-
-use plans::{attempt_files, read_again, with};
-use skilltree::config::plan::{Arm, AxisValue, Design, Optimiser, Plan, Scale, Threshold};
+use super::plans::{attempt_files, read_again, with};
+use skilltree::config::plan::{ArmPlan, AxisValue, Design, Plan, Scale, Threshold};
 use skilltree::config::{ConfigError, Overrides, Place, load};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -22,7 +20,7 @@ fn refused(config: &str, overrides: &Overrides) -> ConfigError {
 }
 
 /// Something of each arm, in order.
-fn each<T>(plan: &Plan, of: impl Fn(&Arm) -> T) -> Vec<T> {
+fn each<T>(plan: &Plan, of: impl Fn(&ArmPlan) -> T) -> Vec<T> {
     plan.arms.iter().map(of).collect()
 }
 
@@ -42,7 +40,7 @@ fn a_grid_has_all_combinations() {
         &[
             "arms=['taught-adam', 'taught-sgd']",
             "sweep.skill.dock.trials={from=100, to=400, steps=4}",
-            "sweep.learning.rate={from=1e-4, to=1e-2, steps=3, scale='log', label='learning rate'}",
+            "sweep.learning.learning_rate={from=1e-4, to=1e-2, steps=3, scale='log', label='learning rate'}",
         ],
     );
     let names: Vec<(&str, u32)> = plan.arms.iter().map(|arm| (arm.name.as_str(), arm.point)).collect();
@@ -54,16 +52,15 @@ fn a_grid_has_all_combinations() {
     for arm in &plan.arms {
         let skill = &arm.skills[0];
         let (trials, rate) = ([100, 200, 300, 400][arm.point as usize / 3], rates[arm.point as usize % 3]);
-        let found = match skill.learning.optimiser {
-            Optimiser::Adam { rate, .. } | Optimiser::Sgd { rate, .. } => rate,
-        };
-        assert_eq!((skill.trials, found), (trials, rate), "{} {}", arm.name, arm.point);
+        assert_eq!((skill.params.trials, skill.params.learning_rate), (trials, rate), "{} {}", arm.name, arm.point);
     }
     let sweep = plan.sweep.as_ref().expect("a sweep");
     assert_eq!((sweep.design, sweep.points.len()), (Design::Grid, 12));
     let axes: Vec<_> = sweep.axes.iter().map(|axis| (axis.key.as_str(), axis.label.as_str(), axis.scale)).collect();
-    let expected =
-        [("skill.dock.trials", "skill.dock.trials", Scale::Linear), ("learning.rate", "learning rate", Scale::Log)];
+    let expected = [
+        ("skill.dock.trials", "skill.dock.trials", Scale::Linear),
+        ("learning.learning_rate", "learning rate", Scale::Log),
+    ];
     assert_eq!(axes, expected);
     assert_eq!((numbers(&plan, 0), numbers(&plan, 1)), (vec![100.0, 200.0, 300.0, 400.0], vec![1e-4, 1e-3, 1e-2]));
     assert_eq!(sweep.describe(5), "skill.dock.trials 200, learning rate 0.01");
@@ -99,15 +96,15 @@ fn any_key_of_an_arm_may_be_an_axis() {
         ("skill.dock.max_steps", &["20", "40"][..]),
         ("skill.dock.reward.collision", &["-10", "-20.5"]),
         ("skill.dock.starts", &["'anywhere'", "'light-area'"]),
-        ("skill.dock.tests", &["anywhere", "light-area"]),
+        ("skill.dock.eval_starts", &["anywhere", "light-area"]),
         ("skill.dock.lessons", &["0", "5"]),
-        ("skill.recharge.choice", &["learned", "ordered"]),
+        ("skill.recharge.policy", &["learned", "ordered"]),
         ("skill.recharge.persistence", &["true", "false", "training"]),
         ("skill.pass-door.learning.gamma", &["0.5", "0.9"]),
         ("learning.optimiser", &["adam"]),
         ("learning.mask_blocked", &["true", "false"]),
         ("learning.hidden", &["8", "32"]),
-        ("robot.memory.light", &["0.5", "0.97"]),
+        ("robot.memory.light_decay", &["0.5", "0.97"]),
         ("robot.beside.near", &["10", "15"]),
         ("teacher.discount", &["0.9", "0.95"]),
         ("root", &["dock", "recharge"]),
@@ -127,10 +124,10 @@ fn any_key_of_an_arm_may_be_an_axis() {
         assert_eq!(swept.arms.len(), values.len(), "{axis}");
         for (arm, value) in swept.arms.iter().zip(&quoted) {
             let alone = self::plan("lin1993.toml", &["arms=['hierarchical']", &single(key, value)]);
-            let world = |plan: &Plan, arm: &Arm| plan.worlds[arm.world].world.clone();
+            let world = |plan: &Plan, arm: &ArmPlan| plan.worlds[arm.world].world.clone();
             assert_eq!(world(&swept, arm), world(&alone, &alone.arms[0]), "{key} = {value}");
-            let bare = Arm { point: 0, world: 0, ..arm.clone() };
-            assert_eq!(bare, Arm { world: 0, ..alone.arms[0].clone() }, "{key} = {value}");
+            let bare = ArmPlan { point: 0, world: 0, ..arm.clone() };
+            assert_eq!(bare, ArmPlan { world: 0, ..alone.arms[0].clone() }, "{key} = {value}");
         }
         read_again(&swept);
     }
@@ -150,7 +147,7 @@ fn random_points_are_drawn_from_the_seed() {
         "arms=['taught-adam']",
         "sweep.design=random",
         "sweep.points=400",
-        "sweep.learning.rate={from=1e-4, to=1e-2, scale='log'}",
+        "sweep.learning.learning_rate={from=1e-4, to=1e-2, scale='log'}",
         "sweep.learning.gamma={from=0.5, to=0.9}",
         "sweep.skill.dock.lessons={from=0, to=10}",
         "sweep.learning.mask_blocked=[true, false]",
@@ -170,7 +167,7 @@ fn random_points_are_drawn_from_the_seed() {
         (count(&rates, 10_f64.powf(-3.5)), 100),
         (count(&gammas, 0.7), 200),
         (count(&gammas, 0.8), 300),
-        (each(&plan, |arm| arm.skills[0].learning.mask_blocked).iter().filter(|flag| **flag).count() as i32, 200),
+        (each(&plan, |arm| arm.skills[0].params.mask_blocked).iter().filter(|flag| **flag == 1).count() as i32, 200),
     ] {
         assert!((found - expected).abs() < 40, "{found} of {expected}");
     }
@@ -319,7 +316,7 @@ fn mistakes_are_named() {
         (&["sweep.skill.recharge.applicable.dcok=[0.1]"][..], "no arm has", "did you mean `dock`?"),
         // Every skill of these arms has a rate of its own, or no trials.
         (
-            &["sweep.learning.rate=[0.1, 0.2]", "skill.dock.learning={rate=0.1}"],
+            &["sweep.learning.learning_rate=[0.1, 0.2]", "skill.dock.learning={rate=0.1}"],
             "changes nothing in any arm",
             "skill.dock",
         ),
@@ -334,7 +331,7 @@ fn mistakes_are_named() {
 fn mistakes_in_files_have_their_line() {
     let config = |sweep: &str| {
         format!(
-            "world = 'world.toml'\n[skill.dock]\ninputs = ['sonar']\nreward = {{ docked = 100 }}\nends = ['docked']\n[sweep]\n{sweep}\n"
+            "world = 'world.toml'\n[skill.dock]\ninputs = ['sonar']\nreward = {{ docked = 100 }}\ngoal = ['docked']\n[sweep]\n{sweep}\n"
         )
     };
     let world = std::fs::read_to_string(shipped("worlds/office.toml")).expect("the office");
@@ -381,7 +378,7 @@ fn the_shipped_sweeps_are_as_published() {
         assert_eq!(held.iter().filter(|pair| **pair == wanted).count(), 1, "{wanted:?}");
     }
     let sweep = plan("sweep.toml", &[]);
-    let found = each(&sweep, |arm| (arm.skills[0].lessons, arm.noise.sonar));
+    let found = each(&sweep, |arm| (arm.skills[0].params.lessons, arm.noise.sonar));
     let expected: Vec<(u32, f32)> =
         [0, 2, 10].into_iter().flat_map(|lessons| [0.0, 0.1, 0.2].map(|noise| (lessons, noise))).collect();
     assert_eq!(found, expected);

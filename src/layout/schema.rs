@@ -1,14 +1,18 @@
-//! What a key is: its path, its default, what it may be, and where that comes from.
+//! What a key of a config or world file is: its path, its default, what it may be, and where that comes from.
 
 use std::fmt;
 
 /// What a number may be.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
-    low: f64,
-    high: f64,
-    open_low: bool,
-    open_high: bool,
+    /// Least value.
+    pub low: f64,
+    /// Greatest value.
+    pub high: f64,
+    /// Whether `low` itself is not allowed.
+    pub open_low: bool,
+    /// Whether `high` itself is not allowed.
+    pub open_high: bool,
 }
 
 impl Bounds {
@@ -69,8 +73,8 @@ pub enum Allowed {
     Flag,
     /// One of these words.
     Choice(&'static [&'static str]),
-    /// Anything else, in words.
-    Other(&'static str),
+    /// Anything else: its types in JSON, and in words.
+    Other(&'static [&'static str], &'static str),
 }
 
 impl fmt::Display for Allowed {
@@ -80,36 +84,36 @@ impl fmt::Display for Allowed {
             Self::Whole(low, high) => write!(f, "a whole number between {low} and {high}"),
             Self::Flag => f.write_str("true or false"),
             Self::Choice(words) => f.write_str(&words.join(" or ")),
-            Self::Other(words) => f.write_str(words),
+            Self::Other(_, words) => f.write_str(words),
         }
     }
 }
 
 /// Where a default comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Source {
+pub enum DefaultSource {
     /// Stated by the paper.
     Paper,
     /// Our choice.
     Ours,
 }
 
-/// One key of a config file.
+/// One key of a config or world file.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Key {
-    /// Dotted path; `*` stands for the name of a skill or of an alteration.
+pub struct KeyRow {
+    /// Dotted path; `*` stands for a name that the file gives, such as a skill's.
     pub path: &'static str,
-    /// Default as TOML; none if the key is required, or may be left out for the reason that `meaning` gives.
+    /// Default as TOML; none if the key is required, or may be left out for the reason that `doc` gives.
     pub default: Option<&'static str>,
     /// What it may be.
     pub allowed: Allowed,
     /// Where the default comes from.
-    pub source: Source,
+    pub source: DefaultSource,
     /// What it means, with its unit.
-    pub meaning: &'static str,
+    pub doc: &'static str,
 }
 
-impl Key {
+impl KeyRow {
     /// The last part of the path.
     pub fn name(&self) -> &'static str {
         self.path.rsplit('.').next().unwrap_or(self.path)
