@@ -46,6 +46,9 @@ fn the_page_and_the_terminal_say_what_was_found() {
     assert!(said.contains("best: point 12 (dock threshold 0.05, rate 0.3): 90.5% ["), "{said}");
     assert!(said.contains("dock threshold: from 42.7% at 0.5 to 85.5% at 0.05: +42.8 ["), "{said}");
     assert!(said.contains("16 of 24 seeds reach 90%; median trials 250 [200, more than 300]"), "{said}");
+    // The page names the run folder alone, the terminal its path.
+    let command = format!("skilltree run {}/config.toml --arm hierarchical --point 12 --seeds 23", dir.display());
+    assert!(said.contains(&command) && !page.contains(&command), "{said}");
     assert_eq!(write(&dir).unwrap(), written);
     assert_eq!(fs::read_to_string(dir.join("report.html")).unwrap(), page);
 }
