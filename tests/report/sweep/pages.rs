@@ -74,7 +74,7 @@ fn further_axes_are_margins_and_slices() {
     folder(&dir, &sweep, &names, &rows, 8);
     let written = write(&dir).unwrap();
     let maps = |part: &str| written.files.iter().filter(|path| path.display().to_string().contains(part)).count();
-    assert_eq!((maps("-slice-"), maps("applicable-dock-world."), maps("learning-rate-world.")), (4, 2, 2));
+    assert_eq!((maps("-slice-"), maps("applicable-dock-world."), maps("learning-rate-world.")), (2, 1, 1));
     let page = fs::read_to_string(dir.join("report.html")).unwrap();
     assert!(page.contains("At office office-hard.") && page.contains("mean over up to 2 points on the other axes"));
     assert!(written.summary.contains("Only 8 seeds"));
