@@ -9,9 +9,11 @@ const SEED: u32 = 1993;
 /// Draws that are kept for one number of values; 32 MiB.
 const KEPT: usize = 1 << 23;
 
-/// All intervals over as many seeds draw alike, and a report has hundreds of them: draws by number of values and of
-/// samples.
-static DRAWN: LazyLock<Mutex<BTreeMap<(usize, usize), Arc<Vec<u32>>>>> = LazyLock::new(Mutex::default);
+/// Draws by number of values and of samples.
+type DrawnSamples = BTreeMap<(usize, usize), Arc<Vec<u32>>>;
+
+/// All intervals over as many seeds draw alike, and a report has hundreds of them.
+static DRAWN: LazyLock<Mutex<DrawnSamples>> = LazyLock::new(Mutex::default);
 
 /// Tells, for each of `samples` samples with replacement, how often each of `count` values is in it.
 pub fn resample(count: usize, samples: usize, mut each: impl FnMut(&[u32])) {

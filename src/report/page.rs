@@ -118,7 +118,7 @@ fn context(run: &FinishedRun, results: &RunResults) -> Value {
         notes => provenance.notes.iter().map(note).collect::<Vec<_>>(),
         seeds => seed_list(&provenance.seeds),
         warnings => cautions(summary),
-        sweep => results.swept.as_ref().map(|swept| sweep::context(swept, &folder_name(run))),
+        sweep => results.swept.as_ref().map(|swept| sweep::context(swept, &folder_name(run), run.dir())),
         claims => results.claims.iter().map(claim_row).collect::<Vec<_>>(),
         comparison => comparison.as_ref().map(|comparison| comparison_part(comparison, results)),
         transfer => transfer::table(main),

@@ -35,10 +35,10 @@ pub fn svg(figure: &Figure) -> String {
     let mut next = plot.bottom + if ticked { 60.0 } else { 22.0 };
     if area.large && ticked {
         plot.labels_at_ends(&mut svg);
-    } else {
+    } else if !figure.legend.is_empty() {
         next = plot.legend_below(&mut svg, next, width);
     }
-    for line in figure.notes.iter().flat_map(|note| wrapped(note, width - 2.0 * MARGIN)) {
+    for line in figure.notes.iter().flat_map(|note| wrapped(note, width - MARGIN)) {
         svg.text(&line, (MARGIN, next), NOTE, GREY, TextAnchor::Start);
         next += NOTE_LINE;
     }
@@ -126,23 +126,24 @@ impl PlotOnPage<'_> {
         }
     }
 
-    /// As many columns as the longest label lets there be; returns where the next line goes.
+    /// Entry after entry, in as many lines as it takes; returns where the next line goes.
     fn legend_below(&self, svg: &mut SvgWriter, top: f64, width: f64) -> f64 {
-        let legend = &self.figure.legend;
-        let before = |entry: &LegendEntry| match entry.swatch {
-            Swatch::Length(length) => length + 6.0,
-            Swatch::Square(_) | Swatch::Disc(_) => 18.0,
-            _ => SWATCH + 6.0,
-        };
-        let widths = legend.iter().map(|entry| before(entry) + text_width(&entry.label, LABEL) + 14.0);
-        let column = widths.fold(1.0, f64::max);
-        let columns = (((width - self.left) / column) as usize).clamp(1, legend.len().max(1));
-        for (i, entry) in legend.iter().enumerate() {
-            let (x, y) = (self.left + column * (i % columns) as f64, top + LEGEND_LINE * (i / columns) as f64);
+        let (mut x, mut y) = (self.left, top);
+        for entry in &self.figure.legend {
+            let before = match entry.swatch {
+                Swatch::Length(length) => length + 6.0,
+                Swatch::Square(_) | Swatch::Disc(_) => 18.0,
+                _ => SWATCH + 6.0,
+            };
+            let room = before + text_width(&entry.label, LABEL);
+            if x > self.left && x + room > width {
+                (x, y) = (self.left, y + LEGEND_LINE);
+            }
             swatch(svg, entry.swatch, (x, y));
-            svg.text(&entry.label, (x + before(entry), y), LABEL, INK, TextAnchor::Start);
+            svg.text(&entry.label, (x + before, y), LABEL, INK, TextAnchor::Start);
+            x += room + 12.0;
         }
-        top + LEGEND_LINE * legend.len().div_ceil(columns) as f64 + 3.0
+        y + LEGEND_LINE + 3.0
     }
 
     /// Labels stand right of the plot in the order of the curves' ends, pushed apart where they would overlap.

@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 /// What browsers on the usual systems are likely to have; widths are measured for the first one.
 const FONTS: &str = "Ubuntu, 'Segoe UI', 'Helvetica Neue', Arial, sans-serif";
 /// Mean width of a character of [`FONTS`] over its size; a little too wide rather than too narrow.
-const CHARACTER: f64 = 0.54;
+const CHARACTER: f64 = 0.52;
 
 /// Where text lies relative to its point. Vertically it is always centred on it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -25,25 +25,30 @@ pub struct Rerun {
     pub seed: u32,
     /// What it achieves at its last test, and the mean over the seeds of its point; none if it was never tested.
     pub values: Option<(f64, f64)>,
-    /// The command, to be given where the path of the run folder holds.
-    pub command: String,
+}
+
+impl Rerun {
+    /// The command that trains the learner again, into a folder beside the run's; to be given where the path of the run
+    /// folder holds.
+    pub fn command(&self, folder: &Path) -> String {
+        let Self { arm, point, seed, .. } = self;
+        let quoted = |text: String| shlex::try_quote(&text).map(|quoted| quoted.into_owned()).unwrap_or(text);
+        let config = quoted(folder.join(crate::run_folder::folder::CONFIG).display().to_string());
+        let beside = folder.file_name().map_or_else(|| "rerun".to_owned(), |name| name.to_string_lossy().into_owned());
+        let out = folder.with_file_name(format!("{beside}-{arm}-p{point}-{seed}"));
+        let out = quoted(out.display().to_string());
+        format!("skilltree run {config} --arm {} --point {point} --seeds {seed} --out {out}", quoted(arm.clone()))
+    }
 }
 
 /// The learners that the report lists: each once, for the first reason.
-pub fn reruns(swept: &SweepResults, folder: &Path) -> Vec<Rerun> {
+pub fn reruns(swept: &SweepResults) -> Vec<Rerun> {
     let mut listed: Vec<Rerun> = Vec::new();
     let mut list = |reason: &'static str, (arm, point, seed): (&str, u32, u32), values: Option<(f64, f64)>| {
         if listed.iter().any(|known| (known.arm.as_str(), known.point, known.seed) == (arm, point, seed)) {
             return false;
         }
-        listed.push(Rerun {
-            reason,
-            arm: arm.to_owned(),
-            point,
-            seed,
-            values,
-            command: command(folder, arm, point, seed),
-        });
+        listed.push(Rerun { reason, arm: arm.to_owned(), point, seed, values });
         true
     };
     for learner in swept.diverged.iter().take(DIVERGED) {
@@ -84,14 +89,4 @@ fn learners(surface: &ResponseSurface, points: &[usize]) -> Vec<(u32, u32, (f64,
         surface.seeds.iter().zip(&point.values).map(move |(&seed, &value)| (point.number, seed, (value, mean)))
     };
     points.iter().flat_map(of).collect()
-}
-
-/// The command that trains one learner of a run again, into a folder beside the run's.
-fn command(folder: &Path, arm: &str, point: u32, seed: u32) -> String {
-    let quoted = |text: String| shlex::try_quote(&text).map(|quoted| quoted.into_owned()).unwrap_or(text);
-    let config = quoted(folder.join(crate::run_folder::folder::CONFIG).display().to_string());
-    let beside = folder.file_name().map_or_else(|| "rerun".to_owned(), |name| name.to_string_lossy().into_owned());
-    let out = folder.with_file_name(format!("{beside}-{arm}-p{point}-{seed}"));
-    let out = quoted(out.display().to_string());
-    format!("skilltree run {config} --arm {} --point {point} --seeds {seed} --out {out}", quoted(arm.to_owned()))
 }

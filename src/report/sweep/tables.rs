@@ -24,8 +24,8 @@ const WORST_SEEDS: usize = 5;
 /// Values of an axis that the list of axes names.
 const MOST_VALUES: usize = 12;
 
-/// What the templates are filled from; `folder` is how commands name the run folder.
-pub fn context(swept: &SweepResults, folder: &Path) -> Value {
+/// What the templates are filled from. Commands name the run folder `folder` on the page, and `here` in the terminal.
+pub fn context(swept: &SweepResults, folder: &Path, here: &Path) -> Value {
     let sweep = &swept.sweep;
     let shown: Vec<&ResponseSurface> = swept.shown().collect();
     let alone = swept.surfaces.iter().filter(|surface| surface.axes.is_empty());
@@ -43,7 +43,7 @@ pub fn context(swept: &SweepResults, folder: &Path) -> Value {
         lacking => swept.lacking.iter().take(MOST_POINTS).map(lacking).collect::<Vec<_>>(),
         more_lacking => swept.lacking.len().saturating_sub(MOST_POINTS),
         drawn => (shown.len() > MOST_ARMS).then_some(MOST_ARMS),
-        reruns => reruns(swept, folder).iter().map(|rerun| rerun_row(swept, rerun)).collect::<Vec<_>>(),
+        reruns => reruns(swept).iter().map(|rerun| rerun_row(swept, rerun, folder, here)).collect::<Vec<_>>(),
         criterion => CRITERION,
         firsts => swept.surfaces.iter().take(MOST_ARMS).map(first).collect::<Vec<_>>(),
         more_firsts => swept.surfaces.len().saturating_sub(MOST_ARMS),
@@ -166,7 +166,7 @@ fn worst_seeds(surface: &ResponseSurface) -> Vec<Value> {
     means.into_iter().take(WORST_SEEDS).map(row).collect()
 }
 
-fn rerun_row(swept: &SweepResults, rerun: &Rerun) -> Value {
+fn rerun_row(swept: &SweepResults, rerun: &Rerun, folder: &Path, here: &Path) -> Value {
     let surface = swept.surfaces.iter().find(|surface| surface.arm == rerun.arm);
     context! {
         reason => rerun.reason,
@@ -176,6 +176,7 @@ fn rerun_row(swept: &SweepResults, rerun: &Rerun) -> Value {
         value => rerun.values.map(|(value, _)| value),
         mean => rerun.values.map(|(_, mean)| mean),
         success => surface.is_none_or(|surface| surface.success),
-        command => &rerun.command,
+        command => rerun.command(folder),
+        command_here => rerun.command(here),
     }
 }

@@ -83,21 +83,22 @@ fn trials_to_criterion_are_censored_at_the_last_test() {
 #[test]
 fn the_worst_learners_come_with_their_commands() {
     let swept = swept();
-    let listed = reruns(&swept, Path::new("runs/my sweep"));
+    let listed = reruns(&swept);
+    let folder = Path::new("runs/my sweep");
     let at_best: Vec<_> =
         listed.iter().filter(|rerun| rerun.arm == "hierarchical" && rerun.point == 12).take(5).collect();
     let seeds: Vec<u32> = at_best.iter().map(|rerun| rerun.seed).collect();
     assert_eq!(seeds, [23, 12, 14, 6, 11]);
     close(at_best[0].values.unwrap().0, 0.6, 1e-12);
     assert_eq!(
-        at_best[0].command,
+        at_best[0].command(folder),
         "skilltree run 'runs/my sweep/config.toml' --arm hierarchical --point 12 --seeds 23 --out \
          'runs/my sweep-hierarchical-p12-23'"
     );
     let each: BTreeSet<_> = listed.iter().map(|rerun| (&rerun.arm, rerun.point, rerun.seed)).collect();
     assert_eq!((each.len(), listed.len()), (20, 20));
-    let here = reruns(&swept, Path::new("runs/quick/"));
-    assert!(here[0].command.ends_with("--out runs/quick-hierarchical-p12-23"), "{}", here[0].command);
+    let here = listed[0].command(Path::new("runs/quick/"));
+    assert!(here.ends_with("--out runs/quick-hierarchical-p12-23"), "{here}");
 }
 
 fn diverged(point: u32, seed: u32) -> DivergedLearner {
@@ -141,9 +142,9 @@ fn learners_that_diverged_count_as_failed() {
     close(surface.selection.means[12], 0.9052083333333334 - f64::from(peak(2, 2, 5)) / 40.0 / 24.0, 1e-12);
     let seen = surface.points[12].seen[5];
     assert_eq!((seen.time, seen.reached), (300.0, false));
-    let listed = reruns(&swept, Path::new("run"));
+    let listed = reruns(&swept);
     assert_eq!(
-        listed[0].command,
+        listed[0].command(Path::new("run")),
         "skilltree run run/config.toml --arm hierarchical --point 12 --seeds 5 --out run-hierarchical-p12-5"
     );
 }
