@@ -112,7 +112,7 @@ fn replayed(replay: &TaughtReplay) -> Result<Vec<Net>, BenchError> {
         let found = executor.backend.memory()?;
         let expected = first.get_or_insert_with(|| found.clone());
         let words = bytemuck::cast_slice(&found.nets);
-        compare("replay", ("first", bytemuck::cast_slice(&expected.nets)), (&executor.info.name, words))?;
+        compare("replay", ("reference", bytemuck::cast_slice(&expected.nets)), (&executor.info.name, words))?;
     }
     Ok(first.as_ref().map(nets).unwrap_or_default())
 }
@@ -124,9 +124,8 @@ type Net = Vec<[f32; LANES]>;
 /// The nets of all learners, child by child.
 fn nets(cohort: &Cohort) -> Vec<Net> {
     let skill = &cohort.shared.skills[0];
-    let rows = |words: &[f32], child: u32| {
-        words[skill.net_offset(child)..].as_chunks().0[..skill.rows as usize].to_vec()
-    };
+    let rows =
+        |words: &[f32], child: u32| words[skill.net_offset(child)..].as_chunks().0[..skill.rows as usize].to_vec();
     let learners = cohort.nets.chunks(cohort.nets_stride);
     learners.flat_map(|words| (0..skill.children).map(move |child| rows(words, child))).collect()
 }
