@@ -10,8 +10,10 @@
 //! card learners LEARNERS,... PART SECONDS
 //! ```
 
-use skilltree::backend::cpu::CpuBackend;
+use skilltree::backend::Cohort;
+use skilltree::backend::cpu::cpu_backend;
 use skilltree::backend::gpu::{GpuBackend, GpuOptions, adapter, arithmetic_check, conformance, device::Device};
+use skilltree::backend::host::HostBackend;
 use skilltree::backend::parity;
 use skilltree::bench::embedded_configs::{DOCKING, ONE_POINT, THRESHOLDS, embedded_plan};
 use skilltree::bench::robot_walk::RobotWalk;
@@ -29,8 +31,8 @@ fn gpu(held: Option<u32>, in_flight: Option<usize>, iterations: Option<u32>) -> 
     GpuBackend::new(&options).unwrap_or_else(|error| panic!("no GPU backend: {error}"))
 }
 
-fn cpu() -> CpuBackend {
-    CpuBackend::new(0, None).unwrap_or_else(|error| panic!("no CPU backend: {error}"))
+fn cpu() -> HostBackend {
+    cpu_backend(0, None).unwrap_or_else(|error| panic!("no CPU backend: {error}"))
 }
 
 /// Functions and shapes of which some answer differs from Rust's.
@@ -45,7 +47,7 @@ fn shapes() -> bool {
         for word in 0..arithmetic_check::ANSWER_WORDS {
             let (mut count, mut first) = (0, None);
             for (asked, found) in questions.as_chunks::<32>().0.iter().zip(answers.as_chunks::<32>().0) {
-                for (wanted, found) in arithmetic_check::probe(asked).iter().zip(found) {
+                for (wanted, found) in arithmetic_check::arithmetic_check(asked).iter().zip(found) {
                     if wanted[word] != found[word] {
                         count += 1;
                         first.get_or_insert((wanted[word], found[word]));

@@ -3,6 +3,7 @@
 //!
 //! A machine without any adapter fails these tests: install software Vulkan (mesa-vulkan-drivers). Nothing
 //! here is skipped.
+#![cfg(feature = "gpu")]
 
 use skilltree::backend::gpu::conformance::{ask, compare, examine, questions};
 use skilltree::backend::gpu::device::Device;

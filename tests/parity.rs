@@ -2,6 +2,7 @@
 //!
 //! A machine without any adapter fails these tests: install software Vulkan (mesa-vulkan-drivers). Nothing
 //! here is skipped.
+#![cfg(feature = "gpu")]
 
 use bytemuck::Zeroable;
 use skilltree::backend::cpu::CpuBackend;

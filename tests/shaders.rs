@@ -1,5 +1,6 @@
 //! Every shipped kernel, checked without a graphics card: it parses, keeps to the numerical contract, and
 //! lays its memory out as Rust does.
+#![cfg(feature = "gpu")]
 
 use naga::{
     AddressSpace, BinaryOperator, Expression, Function, GatherMode, Handle, MathFunction, ScalarKind, Statement,

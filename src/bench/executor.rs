@@ -5,6 +5,7 @@ use super::timing::cores;
 use crate::backend::Backend;
 use crate::backend::cpu::cpu_backend;
 use crate::backend::open::{OpenAdapter, open_adapters};
+use crate::backend::reference::reference_backend;
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -86,12 +87,13 @@ impl Executor {
     }
 }
 
-/// Opens executors that run on the CPU.
+/// Opens executors that run on the CPU; the first one is the reference.
 ///
 /// # Errors
 /// Where threads cannot be started.
 pub fn open_cpu() -> Result<Vec<Executor>, BenchError> {
-    let mut executors = vec![Executor::cpu(1)?];
+    let reference = Box::new(reference_backend(1, None)?);
+    let mut executors = vec![Executor::new("reference", ExecutorKind::Reference, 1, reference), Executor::cpu(1)?];
     if cores() > 1 {
         executors.push(Executor::cpu(cores())?);
     }

@@ -1,6 +1,8 @@
 //! Wrong configs, worlds and command lines.
 
 use super::fixture::{Sandbox, edited, shipped};
+use super::support::tree;
+use std::fs;
 
 #[test]
 fn config_mistakes_name_their_line() {

@@ -1,6 +1,7 @@
 //! Learners that are poisoned: found, named with their first bad transition, and without effect on others.
 
 use skilltree::backend::cpu::CpuBackend;
+#[cfg(feature = "gpu")]
 use skilltree::backend::gpu::{GpuBackend, GpuOptions};
 use skilltree::backend::{Backend, BackendError, Cohort, Stop, Test};
 use skilltree::config::plan::Plan;
@@ -178,6 +179,7 @@ fn one_poisoned_learner_of_4096_is_named_and_the_others_do_not_notice() {
 }
 
 #[test]
+#[cfg(feature = "gpu")]
 fn a_gpu_finds_the_same_failure() {
     let plan = plan("0..6");
     let group = only_group(&plan);

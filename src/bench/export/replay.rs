@@ -112,7 +112,7 @@ fn replayed(replay: &TaughtReplay) -> Result<Vec<Net>, BenchError> {
         let found = executor.backend.memory()?;
         let expected = first.get_or_insert_with(|| found.clone());
         let words = bytemuck::cast_slice(&found.nets);
-        compare("replay", ("first", bytemuck::cast_slice(&expected.nets)), (&executor.info.name, words))?;
+        compare("replay", ("reference", bytemuck::cast_slice(&expected.nets)), (&executor.info.name, words))?;
     }
     Ok(first.as_ref().map(nets).unwrap_or_default())
 }

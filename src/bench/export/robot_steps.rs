@@ -5,9 +5,9 @@ use crate::bench::embedded_configs::{DOCKING, embedded_plan};
 use crate::bench::executor::open_cpu;
 use crate::bench::robot_walk::RobotWalk;
 use crate::bench::{BenchError, compare};
-use crate::env::observe::{DRAW_ACTUATOR, DRAW_COMPASS, DRAW_LIGHT};
+use crate::env::observe::{DRAW_ACTUATOR, DRAW_COMPASS, DRAW_LIGHT, DRAW_SONAR};
 use crate::layout::{RAYS, Robot};
-use crate::math::rng::{Purpose, Stream, coarse_noise, draw, noise};
+use crate::math::rng::{Purpose, StepRandom, Stream, coarse_noise, noise};
 use crate::train::observation::SensorValues;
 use safetensors::tensor::Dtype;
 use serde_json::{Map, Value, json};
@@ -33,17 +33,14 @@ impl StepNoise {
             step: robot.step,
             purpose: Purpose::Given as u32,
         };
-        let own = |number: usize| {
-            let [x, y, ..] = draw(stream, number as u32);
-            noise(robot.noise.kind, x, y)
-        };
-        // Six draws from number `first` on have a word for each of 24 bearings.
-        let shared = |first: usize, bearing: usize| {
-            coarse_noise(robot.noise.kind, draw(stream, (first + bearing % 6) as u32)[bearing / 6])
-        };
+        let mut random = StepRandom::default();
+        random.draw_step(stream);
+        let kind = robot.noise.kind;
+        let own = |number: usize| noise(kind, random.x[number], random.y[number]);
+        let shared = |first: usize, bearing: usize| coarse_noise(kind, random.bearing_word(first, bearing));
         Self {
             slip: robot.noise.actuator * own(DRAW_ACTUATOR) + 1.0,
-            sonar: std::array::from_fn(|ray| robot.noise.sonar * shared(0, ray) + 1.0),
+            sonar: std::array::from_fn(|ray| robot.noise.sonar * shared(DRAW_SONAR, ray) + 1.0),
             light: std::array::from_fn(|ray| robot.noise.light * shared(DRAW_LIGHT, ray) + 1.0),
             compass: robot.noise.compass * own(DRAW_COMPASS),
         }
@@ -78,7 +75,7 @@ pub(super) fn robot_steps() -> Result<(Vec<ExportTensor>, Map<String, Value>), B
             let mut own = before.clone();
             own.advance(executor.backend.as_mut(), &round, 1)?;
             if number > 0 {
-                compare("robot-steps", ("first", walk.words()), (&executor.info.name, own.words()))?;
+                compare("robot-steps", ("reference", walk.words()), (&executor.info.name, own.words()))?;
             }
             walk = own;
         }
