@@ -28,7 +28,7 @@ pub mod training;
 
 use crate::config::ConfigError;
 use crate::run_folder::file_system::{Disk, FileSystem};
-use crate::run_folder::{FinishedRun, RecordError, atomic, folder};
+use crate::run_folder::{FinishedRun, RecordError, folder, writer};
 use rayon::prelude::*;
 use results::Results;
 use std::path::{Path, PathBuf};
@@ -75,22 +75,22 @@ pub fn write_on(disk: Arc<dyn Disk>, dir: &Path) -> Result<Vec<PathBuf>, ReportE
     let page = page::render(&run, &results, &drawings)?;
 
     let folder = dir.join(FIGURES);
-    atomic::make_folder(&*disk, &folder)?;
+    writer::make_folder(&*disk, &folder)?;
     for folder in [dir, &folder] {
-        atomic::remove_leftovers(&*disk, folder)?;
+        writer::remove_leftovers(&*disk, folder)?;
     }
     let mut written = Vec::new();
     let images: Result<Vec<_>, _> = drawings.par_iter().map(|figure| raster::png(&figure.svg)).collect();
     for (figure, image) in drawings.iter().zip(images?) {
         for (ending, bytes) in [("svg", figure.svg.as_bytes()), ("png", image.as_slice())] {
             let path = folder.join(format!("{}.{ending}", figure.name));
-            atomic::place(&*disk, &path, bytes)?;
+            writer::place(&*disk, &path, bytes)?;
             written.push(path);
         }
     }
-    atomic::sync_folder(&*disk, &folder)?;
+    writer::sync_folder(&*disk, &folder)?;
     let path = dir.join(PAGE);
-    atomic::write(&*disk, &path, page.as_bytes())?;
+    writer::write(&*disk, &path, page.as_bytes())?;
     written.push(path);
     Ok(written)
 }

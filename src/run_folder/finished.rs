@@ -110,7 +110,7 @@ fn without_manifest(disk: &dyn Disk, dir: &Path) -> Result<RecordError, RecordEr
     let found = match disk.kind(dir).map_err(RecordError::unreadable(dir))? {
         None => " (there is no such folder)".to_owned(),
         Some(Kind::File) => " (it is a file)".to_owned(),
-        Some(Kind::Folder) => match super::atomic::list(disk, dir)?.first() {
+        Some(Kind::Folder) => match super::writer::list(disk, dir)?.first() {
             Some(name) => format!(" (it holds `{name}`, and no manifest.json)"),
             None => " (it is empty)".to_owned(),
         },

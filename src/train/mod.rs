@@ -12,6 +12,7 @@ pub mod codec;
 pub mod committed;
 pub mod divergence;
 pub mod estimate;
+pub mod nets;
 pub mod observation;
 pub mod parity;
 pub mod pretraining;
