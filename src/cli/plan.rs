@@ -5,7 +5,7 @@ use super::output::tell;
 use crate::backend::{Backend, BackendError};
 use crate::config::plan::{Design, Plan};
 use crate::train::batch_group::BatchGroup;
-use crate::train::estimate::{Estimate, estimate, measure};
+use crate::train::estimate::{Forecast, forecast, measure, parts_bytes};
 use crate::train::run::Options;
 use crate::train::schedule::waves;
 use std::collections::BTreeSet;
@@ -20,7 +20,7 @@ pub(super) fn show(
     groups: &[BatchGroup],
     backend: &mut dyn Backend,
     options: Options,
-) -> Result<Estimate, BackendError> {
+) -> Result<Forecast, BackendError> {
     tell(if plan.title.is_empty() { &plan.name } else { &plan.title });
     let worlds: Vec<&str> = plan.worlds.iter().map(|placed| placed.world.name.as_str()).collect();
     tell(&format!("world:    {}", worlds.join(", ")));
@@ -32,27 +32,28 @@ pub(super) fn show(
     }
     let size = |bytes| options.cohort.map_or_else(|| backend.cohort_size(bytes), Ok);
     let waves = waves(plan, groups, size, |_| false)?;
-    let estimate = estimate(plan, groups, &waves);
-    tell(&format!("learners: {}", learners(plan, &estimate)));
+    let forecast = forecast(plan, groups, &waves);
+    tell(&format!("learners: {}", learners(plan, &forecast)));
     tell(&format!(
         "memory:   {} for each learner, {} for {} in {}",
-        bytes(estimate.bytes_per_learner as u64),
-        bytes(estimate.cohort_bytes),
-        count(estimate.largest, "learner"),
-        match estimate.cohorts {
+        bytes(forecast.bytes_per_learner as u64),
+        bytes(forecast.cohort_bytes),
+        count(forecast.largest, "learner"),
+        match forecast.cohorts {
             1 => "one cohort".to_owned(),
             cohorts => format!("the largest of {cohorts} cohorts"),
         }
     ));
-    tell(&format!("disk:     about {}, and {} until the end", bytes(estimate.disk), bytes(estimate.parts)));
+    let parts = parts_bytes(groups, &waves);
+    tell(&format!("disk:     about {}, and {} until the end", bytes(forecast.disk), bytes(parts)));
     tell(&format!("backend:  {}", backend.describe()));
-    let speed = measure(plan, groups, &waves, &estimate, backend, MEASURE)?;
-    tell(&format!("time:     {} by estimate, from a short trial on this machine", about(estimate.time(speed))));
-    Ok(estimate)
+    let speed = measure(plan, groups, &waves, &forecast, backend, MEASURE)?;
+    tell(&format!("time:     {} by estimate, from a short trial on this machine", about(forecast.time(speed))));
+    Ok(forecast)
 }
 
 /// `1568 (1 arm x 49 points x 32 seeds); what is below their roots is learned 32 times`.
-fn learners(plan: &Plan, estimate: &Estimate) -> String {
+fn learners(plan: &Plan, forecast: &Forecast) -> String {
     let arms: BTreeSet<&str> = plan.arms.iter().map(|arm| arm.name.as_str()).collect();
     let points: BTreeSet<u32> = plan.arms.iter().map(|arm| arm.point).collect();
     let mut factors = vec![count(arms.len(), "arm"), count(points.len(), "point"), count(plan.seeds.len(), "seed")];
@@ -62,9 +63,9 @@ fn learners(plan: &Plan, estimate: &Estimate) -> String {
     let whole = arms.len() * points.len() == plan.arms.len();
     // An arm without the key of some axis has fewer points.
     let product = if whole { factors.join(" x ") } else { format!("of {}", factors.join(" x ")) };
-    let mut text = format!("{} ({product})", estimate.learners);
-    if estimate.pretrained > 0 && estimate.pretrained < estimate.learners {
-        text += &format!("; everything below the roots is trained {} times", estimate.pretrained);
+    let mut text = format!("{} ({product})", forecast.learners);
+    if forecast.pretrained > 0 && forecast.pretrained < forecast.learners {
+        text += &format!("; everything below the roots is trained {} times", forecast.pretrained);
     }
     text
 }

@@ -8,7 +8,7 @@ use crate::config::plan::Action;
 use crate::config::{Overrides, load};
 use crate::env::motion::{COLLISION, DOCKED};
 use crate::layout::Robot;
-use crate::train::observation::{Observation, SILENT, floor_only, robot_at};
+use crate::train::observation::{SILENT, SensorValues, floor_only, robot_at};
 use crate::world::{Pose, World};
 use clap::ValueEnum;
 use glam::Vec2;
@@ -101,7 +101,7 @@ pub(super) fn probe(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn reading_of(robot: &Robot, world: &World) -> Reading {
-    let observed = Observation::of(robot);
+    let observed = SensorValues::of(robot);
     let room = world.room_of(Vec2::new(robot.x, robot.y)).map(|room| world.rooms[room].name.clone());
     Reading {
         x: robot.x,

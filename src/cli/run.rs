@@ -87,7 +87,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let groups = groups(&plan)?;
     let options =
         Options { cohort: arguments.cohort.map(|cohort| cohort as usize), checkpoint: Some(arguments.checkpoint) };
-    let estimate = plan::show(&plan, &groups, backend.as_mut(), options)?;
+    let forecast = plan::show(&plan, &groups, backend.as_mut(), options)?;
     tell(&format!("folder:   {}", out.display()));
     if arguments.dry_run {
         tell("nothing was run or written (--dry-run)");
@@ -103,7 +103,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let started = Instant::now();
     let trials = trials(&plan);
     let signals = Signals::listen().map_err(Failure::Signals)?;
-    let mut progress = RunProgress::new(estimate.learners, trials, signals);
+    let mut progress = RunProgress::new(forecast.learners, trials, signals);
     let provenance = Provenance {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         commit: option_env!("SKILLTREE_COMMIT").map(str::to_owned),

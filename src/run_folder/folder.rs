@@ -2,20 +2,14 @@
 
 use super::checksummed::{self, Refusal};
 use super::file_system::{Disk, FileSystem, Lock, TryLockError};
-use super::manifest::{CHECKPOINT, PARTS, is_free, is_plain};
-use super::writer::{self, read_if_there};
-use super::{FORMAT, Manifest, Provenance, RecordError, ResultsWriter};
+use super::paths::{CHECKPOINT, LOCK, MARKER, PARTS, is_free, is_plain, list, part_names, read_if_there};
+use super::{FORMAT, FinishedRun, Manifest, Provenance, RecordError, ResultsWriter, writer};
 use std::collections::BTreeSet;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Name of the resolved config in a run folder.
-pub const CONFIG: &str = "config.toml";
-/// Name of the config's own floor plan in a run folder.
-pub const WORLD: &str = "world.toml";
-const LOCK: &str = ".lock";
-const MARKER: &str = ".skilltree";
+pub use super::paths::{CONFIG, WORLD};
 
 /// How far a run folder has come.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -91,7 +85,7 @@ impl RunFolder {
         let given = given.iter().map(|(name, _)| (*name).to_owned()).collect();
         let mut folder = Self { disk, dir: dir.into(), given, maker, state: State::Fresh, _lock: lock };
         if complete {
-            super::FinishedRun::read_on(Arc::clone(&folder.disk), dir)?;
+            FinishedRun::read_on(Arc::clone(&folder.disk), dir)?;
             folder.state = State::Complete;
             folder.remove_parts();
         } else if started {
@@ -262,21 +256,6 @@ pub fn lock(disk: &dyn Disk, dir: &Path) -> Result<Lock, RecordError> {
     })
 }
 
-/// Learners whose results a folder's parts hold, and those of the whole run if there are parts, as their names say:
-/// `32-of-640_...`.
-///
-/// # Errors
-/// [`RecordError::Unreadable`] if the folder cannot be listed.
-pub fn tally(disk: &dyn Disk, dir: &Path) -> Result<(u64, Option<u64>), RecordError> {
-    let numbers = |name: &String| -> Option<(u64, u64)> {
-        let (finished, rest) = name.split_once("-of-")?;
-        Some((finished.parse().ok()?, rest.split('_').next()?.parse().ok()?))
-    };
-    let counts: Vec<(u64, u64)> = part_names(disk, dir)?.iter().filter_map(numbers).collect();
-    let finished = counts.iter().fold(0_u64, |sum, (finished, _)| sum.saturating_add(*finished));
-    Ok((finished, counts.first().map(|(_, of)| *of)))
-}
-
 /// The files that a run is made from: each is free and comes once, and one of them is the config's own world.
 fn check_names(given: &[(&str, &str)]) -> Result<(), RecordError> {
     let names: BTreeSet<&str> = given.iter().map(|(name, _)| *name).collect();
@@ -321,7 +300,7 @@ fn refuse_foreign(disk: &dyn Disk, dir: &Path) -> Result<(), RecordError> {
             None => Err(RecordError::damaged(&marker, "not the text that skilltree writes")),
         };
     }
-    match writer::list(disk, dir)?.into_iter().find(|name| name != LOCK && !writer::is_temporary(name)) {
+    match list(disk, dir)?.into_iter().find(|name| name != LOCK && !writer::is_temporary(name)) {
         Some(found) => Err(RecordError::Foreign { path: dir.into(), found }),
         None => Ok(()),
     }
@@ -329,8 +308,4 @@ fn refuse_foreign(disk: &dyn Disk, dir: &Path) -> Result<(), RecordError> {
 
 fn write_once(disk: &dyn Disk, path: &Path, bytes: &[u8]) -> Result<(), RecordError> {
     if exists(disk, path)? { Ok(()) } else { writer::write(disk, path, bytes) }
-}
-
-fn part_names(disk: &dyn Disk, dir: &Path) -> Result<Vec<String>, RecordError> {
-    Ok(writer::list(disk, &dir.join(PARTS))?.into_iter().filter(|name| is_plain(name)).collect())
 }

@@ -1,6 +1,7 @@
 //! `manifest.json`: what made a run folder, and the length and hash of every file in it.
 
 use super::file_system::Disk;
+use super::paths::is_plain;
 use super::{FORMAT, RecordError, json};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -54,7 +55,7 @@ pub struct Manifest {
 
 impl Manifest {
     /// The file's name.
-    pub const NAME: &'static str = "manifest.json";
+    pub const NAME: &'static str = super::paths::MANIFEST;
 
     /// JSON text, ending with a line feed.
     ///
@@ -85,25 +86,6 @@ impl Manifest {
             None => Ok(manifest),
         }
     }
-}
-
-/// Folder of the committed parts in a run folder.
-pub(super) const PARTS: &str = "parts";
-/// What is kept of the learners in training.
-pub(super) const CHECKPOINT: &str = "checkpoint";
-
-/// Whether a result or a file of the experiment may have this path: one inside the folder that is not kept for ourselves.
-pub(super) fn is_free(name: &str) -> bool {
-    is_plain(name) && ![Manifest::NAME, CHECKPOINT].contains(&name) && name.split('/').next() != Some(PARTS)
-}
-
-/// Whether a path stays in its folder: words of ordinary characters with `/` between, none starting with a dot.
-pub(crate) fn is_plain(path: &str) -> bool {
-    path.split('/').all(|word| {
-        !word.is_empty()
-            && !word.starts_with('.')
-            && word.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '_' | '+' | '='))
-    })
 }
 
 impl FileDigest {

@@ -12,6 +12,7 @@ pub mod finished;
 pub mod folder;
 mod json;
 pub mod manifest;
+mod paths;
 pub mod results_writer;
 pub mod sensor_readings;
 pub mod sums;

@@ -1,7 +1,8 @@
 //! The end of a run: its results and its manifest.
 
 use super::file_system::Disk;
-use super::manifest::{FileDigest, is_free};
+use super::manifest::FileDigest;
+use super::paths::is_free;
 use super::writer::{self, FileWriter};
 use super::{FORMAT, Manifest, Provenance, RecordError};
 use std::collections::{BTreeMap, BTreeSet};

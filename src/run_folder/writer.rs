@@ -3,6 +3,7 @@
 use super::RecordError;
 use super::file_system::{Disk, Writing};
 use super::manifest::{FileDigest, hexadecimal};
+use super::paths::list;
 use sha2::{Digest, Sha256};
 use std::fmt;
 use std::io::{self, BufWriter, Write};
@@ -161,32 +162,6 @@ pub fn remove_leftovers(disk: &dyn Disk, folder: &Path) -> Result<(), RecordErro
         let _ = disk.remove_file(&folder.join(name));
     }
     Ok(())
-}
-
-/// Names in a folder, sorted; none if there is no such folder. Names that are not Unicode come out altered.
-///
-/// # Errors
-/// [`RecordError::Unreadable`].
-pub fn list(disk: &dyn Disk, folder: &Path) -> Result<Vec<String>, RecordError> {
-    let names = match disk.list(folder) {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
-        other => other.map_err(RecordError::unreadable(folder))?,
-    };
-    let mut names: Vec<String> = names.iter().map(|name| name.to_string_lossy().into_owned()).collect();
-    names.sort();
-    Ok(names)
-}
-
-/// The content of a file, or none if there is no such file.
-///
-/// # Errors
-/// [`RecordError::Unreadable`].
-pub fn read_if_there(disk: &dyn Disk, path: &Path) -> Result<Option<Vec<u8>>, RecordError> {
-    match disk.read(path) {
-        Ok(bytes) => Ok(Some(bytes)),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-        Err(source) => Err(RecordError::Unreadable { path: path.into(), source }),
-    }
 }
 
 fn folder_of(path: &Path) -> &Path {

@@ -6,7 +6,7 @@
 
 use super::batch_group::{BatchGroup, LearnerId};
 use super::callbacks::{Callbacks, Interrupted};
-use super::checkpoint::CohortState;
+use super::cohort_state::CohortState;
 use super::divergence::divergence_of;
 use super::nets::pack;
 use super::pretraining::Pretrained;

@@ -26,7 +26,7 @@ const TIMED: usize = 4096;
 
 /// What a run will take.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Estimate {
+pub struct Forecast {
     /// Learners.
     pub learners: usize,
     /// Learners that train everything below the roots, once for all arms that share it.
@@ -41,15 +41,13 @@ pub struct Estimate {
     pub cohort_bytes: u64,
     /// Bytes of the tables and nets, without the report.
     pub disk: u64,
-    /// Bytes of what is committed until the run is complete, uncompressed: trial tables and weights.
-    pub parts: u64,
     /// Iterations of all of it.
     iterations: f64,
 }
 
 /// Counts what the waves of a run will take.
-pub fn estimate(plan: &Plan, groups: &[BatchGroup], waves: &[Wave]) -> Estimate {
-    let mut all = Estimate::default();
+pub fn forecast(plan: &Plan, groups: &[BatchGroup], waves: &[Wave]) -> Forecast {
+    let mut all = Forecast::default();
     for wave in waves {
         let mut first = 0;
         if let Some((arm, seeds)) = &wave.pretraining {
@@ -62,9 +60,6 @@ pub fn estimate(plan: &Plan, groups: &[BatchGroup], waves: &[Wave]) -> Estimate 
             let group = group_of(groups, ids[0].arm);
             all.add(group, ids.len());
             all.learners += ids.len();
-            // A third of the nets' memory are weights, the rest is the optimiser's.
-            let rows = group.shape.rows_stride.next_multiple_of(ROW_WORDS);
-            all.parts += (ids.len() * 4 * (rows + group.shape.nets_stride / 3)) as u64;
             for run in ids.chunk_by(|a, b| a.arm == b.arm) {
                 let (arm, count) = (run[0].arm, run.len());
                 all.iterations += count as f64 * iterations(plan, arm, first..plan.arms[arm].skills.len());
@@ -75,7 +70,7 @@ pub fn estimate(plan: &Plan, groups: &[BatchGroup], waves: &[Wave]) -> Estimate 
     all
 }
 
-impl Estimate {
+impl Forecast {
     fn add(&mut self, group: &BatchGroup, learners: usize) {
         let bytes = group.shape.bytes_per_learner();
         self.cohorts += 1;
@@ -99,7 +94,7 @@ pub fn measure(
     plan: &Plan,
     groups: &[BatchGroup],
     waves: &[Wave],
-    all: &Estimate,
+    all: &Forecast,
     backend: &mut dyn Backend,
     most: Duration,
 ) -> Result<f64, BackendError> {
@@ -174,4 +169,16 @@ fn disk_of(plan: &Plan, group: &BatchGroup, arm: usize) -> u64 {
         }
     }
     bytes + plan.alterations.len() as u64 * rooms * ROW_BYTES[1]
+}
+
+/// Bytes that the committed parts of a run take until it is complete, before they are compressed: trial tables and nets.
+pub fn parts_bytes(groups: &[BatchGroup], waves: &[Wave]) -> u64 {
+    let cohorts = waves.iter().flat_map(|wave| &wave.cohorts);
+    let each = cohorts.map(|ids| {
+        let shape = &group_of(groups, ids[0].arm).shape;
+        let rows = shape.rows_stride.next_multiple_of(ROW_WORDS);
+        // A third of the nets' memory are weights, the rest is the optimiser's.
+        ids.len() * 4 * (rows + shape.nets_stride / 3)
+    });
+    each.sum::<usize>() as u64
 }

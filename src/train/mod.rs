@@ -9,6 +9,7 @@ pub mod batch_group;
 pub mod callbacks;
 pub mod checkpoint;
 pub mod codec;
+pub mod cohort_state;
 pub mod committed;
 pub mod divergence;
 pub mod estimate;

@@ -13,7 +13,7 @@ use bytemuck::Zeroable;
 
 /// One reading of all sensors.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Observation {
+pub struct SensorValues {
     /// Inches; index 0 straight ahead, then counter-clockwise every 15 degrees.
     pub sonar: [u32; RAYS],
     /// 0 or 1, in the same order.
@@ -24,7 +24,7 @@ pub struct Observation {
     pub compass: f32,
 }
 
-impl Observation {
+impl SensorValues {
     /// What the robot sensed last.
     pub fn of(robot: &Robot) -> Self {
         Self {
@@ -76,7 +76,7 @@ pub fn places(world: &World, backend: &mut dyn Backend) -> Result<Vec<PlaceReadi
     }
     backend.step(&shared, &mut robots, 1)?;
     let reading = |((place, pose), robot): (&(String, Pose), &Robot)| {
-        let observed = Observation::of(robot);
+        let observed = SensorValues::of(robot);
         PlaceReading {
             place: place.clone(),
             x: pose.x,

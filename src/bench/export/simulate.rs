@@ -5,7 +5,7 @@ use crate::backend::cpu::CpuBackend;
 use crate::bench::simulate::{StepNoise, Walk};
 use crate::bench::workload::{self, DOCKING};
 use crate::bench::{BenchError, same};
-use crate::train::observation::Observation;
+use crate::train::observation::SensorValues;
 use safetensors::tensor::Dtype;
 use serde_json::{Map, Value, json};
 
@@ -39,7 +39,7 @@ pub(super) fn simulate() -> Result<(Vec<Tensor>, Map<String, Value>), BenchError
         same("robot-steps", ("cpu", walk.words()), ("scalar", scalar.words()))?;
         pose.extend(poses(&walk));
         for robot in &walk.robots {
-            let senses = Observation::of(robot);
+            let senses = SensorValues::of(robot);
             bumpers.extend(senses.bumpers);
             events.push(robot.events as u8);
             sonar.extend(senses.sonar.map(|reading| reading as u8));
