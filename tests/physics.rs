@@ -19,7 +19,7 @@ use skilltree::layout::choices::{NOISE_GAUSSIAN, NOISE_UNIFORM};
 use skilltree::layout::{BASE_WORDS, RAYS, Robot};
 use skilltree::math::functions::sin_cos;
 use skilltree::math::rng::place_of;
-use skilltree::train::observation::{Observation, SILENT, floor_only, robot_at};
+use skilltree::train::observation::{SILENT, SensorValues, floor_only, robot_at};
 use skilltree::world::{Pose, World};
 
 /// What the brief allows between f32 and exact geometry, inches.
@@ -131,10 +131,10 @@ fn cpu() -> CpuBackend {
 }
 
 /// What a robot without noise senses, through the shipped kernel.
-fn sense(shared: &CohortData, poses: &[Pose]) -> Vec<Observation> {
+fn sense(shared: &CohortData, poses: &[Pose]) -> Vec<SensorValues> {
     let mut robots: Vec<Robot> = poses.iter().map(|pose| robot_at(*pose, &SILENT, 1, 2)).collect();
     cpu().step(shared, &mut robots, 1).expect("the CPU steps");
-    robots.iter().map(Observation::of).collect()
+    robots.iter().map(SensorValues::of).collect()
 }
 
 fn at(pose: Pose) -> P {
@@ -694,7 +694,7 @@ fn noise_has_the_stated_mean_deviation_and_bounds() {
             check_moments("turn", &turned.iter().map(slip).collect::<Vec<_>>(), 0.08 * unit, 0.08 * end);
         }
         let still = crowd(255, &noise, count);
-        let senses: Vec<Observation> = still.iter().map(Observation::of).collect();
+        let senses: Vec<SensorValues> = still.iter().map(SensorValues::of).collect();
         let compass: Vec<f64> = senses.iter().map(|s| (f64::from(s.compass) + 180.0) % 360.0 - 180.0).collect();
         check_moments("compass", &compass, 2.865 * unit, 2.865 * end);
         let mut sides = Vec::new();
@@ -716,7 +716,7 @@ fn noise_has_the_stated_mean_deviation_and_bounds() {
     }
     let quiet = crowd(FORWARD, &SILENT, 100);
     assert!(quiet.iter().all(|r| (r.x, r.y, r.heading) == (72.0, 60.0, 0.0)));
-    assert!(quiet.iter().all(|r| Observation::of(r).compass == 0.0 && Observation::of(r).sonar[0] == 48));
+    assert!(quiet.iter().all(|r| SensorValues::of(r).compass == 0.0 && SensorValues::of(r).sonar[0] == 48));
 }
 
 /// The CPU moves robots side by side: in any number, with and without an action, and with anything in what a step writes.

@@ -4,8 +4,12 @@ mod support;
 
 use skilltree::backend::cpu::CpuBackend;
 use skilltree::backend::{Backend, BackendError};
+use skilltree::config::plan::Plan;
+use skilltree::config::{Overrides, load};
 use skilltree::run_folder::sweep::{self, AxisValue, read_sweep};
 use skilltree::run_folder::tables::{EVALUATIONS, TRIALS, read_evaluations, read_trials};
+use skilltree::train::batch_group::groups;
+use skilltree::train::pretraining::shared_skills;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
@@ -152,6 +156,38 @@ fn a_learner_alone_is_the_learner_in_the_sweep() {
     let bounds: BTreeSet<(&str, u32)> =
         tests.iter().map(|row| (row.arm.as_str(), row.point)).filter(|(arm, _)| arm.starts_with("planner")).collect();
     assert_eq!(bounds, BTreeSet::from([("planner", 0), ("planner", 1)]));
+}
+
+/// A plan with two points on an axis, and perhaps other changes.
+fn swept(config: &str, axis: &str, more: &[&str]) -> Plan {
+    let set = more.iter().chain([&axis]).map(|set| (*set).to_owned()).collect();
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(config);
+    load(&path, &Overrides { set, seeds: Some("0".to_owned()), ..Overrides::default() }).expect("a plan")
+}
+
+/// Numbers of single learners keep nobody apart; whatever the teacher, the world or the nets' shapes know does.
+#[test]
+fn arms_share_a_batch_and_skills_where_their_learners_see_the_same() {
+    let cuts = ["world=../tests/support/small.toml", "arms=['taught-adam']", "teacher.bank=16", "teacher.episodes=1"];
+    for (axis, expected) in [
+        ("sweep.skill.dock.trials=[4, 7]", 1),
+        ("sweep.skill.dock.max_steps=[9, 12]", 2),
+        ("sweep.robot.noise.sonar=[0.0, 0.2]", 2),
+    ] {
+        let plan = swept("configs/docking.toml", axis, &cuts);
+        let found = groups(&plan).unwrap_or_else(|error| panic!("{axis}: {error}"));
+        assert_eq!((found.len(), found.iter().map(|group| group.arms.len()).sum::<usize>()), (expected, 2), "{axis}");
+        // Without skills below the root, what trains together is what shares a batch.
+        assert_eq!(shared_skills(&plan).len(), expected, "{axis}");
+    }
+    for (axis, shared) in
+        [("sweep.skill.top.applicable.dock=[-0.1, 0.2]", 1), ("sweep.skill.pass.learning.rate=[0.1, 0.2]", 2)]
+    {
+        let plan = swept("tests/support/tree.toml", axis, &["arms=['persistent']"]);
+        let found = shared_skills(&plan);
+        assert!(found.iter().all(|shared| shared.pretrained));
+        assert_eq!((found.len(), groups(&plan).expect("groups").len()), (shared, 1), "{axis}");
+    }
 }
 
 #[test]

@@ -14,7 +14,7 @@ use skilltree::learn::lesson::ENDED;
 use skilltree::teacher::demonstrations::Demonstration;
 use skilltree::teacher::value_iteration::{Planner, Terms};
 use skilltree::train::batch_group::{BatchGroup, groups};
-use skilltree::train::observation::{Observation, SILENT, floor_only, robot_at};
+use skilltree::train::observation::{SILENT, SensorValues, floor_only, robot_at};
 use skilltree::world::{Pose, World, parse};
 use std::collections::VecDeque;
 use std::fmt::Write;
@@ -360,7 +360,7 @@ fn plan_room(group: &BatchGroup, pose: Pose) -> u32 {
 }
 
 /// Events that the readings after an action tell of: the nearest one 30 to 150 degrees to a side is 15 to 30 inches.
-fn following_wall(senses: &Observation, action: u32, events: u32) -> u32 {
+fn following_wall(senses: &SensorValues, action: u32, events: u32) -> u32 {
     let near = |rays: std::ops::RangeInclusive<usize>| {
         let nearest = senses.sonar[rays].iter().min().copied().unwrap_or(0);
         action == FORWARD && events & (COLLISION | DOCKED) == 0 && (15..=30).contains(&nearest)
@@ -381,7 +381,7 @@ fn lessons_without_noise_can_be_driven_again() {
             let sense = |step: usize| {
                 let mut record = [0; BASE_WORDS];
                 record.copy_from_slice(&test.lesson[LESSON_HEADER + step * BASE_WORDS..][..BASE_WORDS]);
-                Observation::of(&Robot { record, ..bytemuck::Zeroable::zeroed() })
+                SensorValues::of(&Robot { record, ..bytemuck::Zeroable::zeroed() })
             };
             let mut pose = test.start;
             let room = |pose: Pose| plan_room(&group, pose);
@@ -406,7 +406,7 @@ fn lessons_without_noise_can_be_driven_again() {
         assert!(hits < 100, "{hits} collisions in 200 lessons");
         CpuBackend::new(2, None).expect("threads").step(&group.shared, &mut robots, 1).expect("the CPU steps");
         for (then, robot) in sensed.iter().zip(&robots) {
-            let now = Observation::of(robot);
+            let now = SensorValues::of(robot);
             assert_eq!((then.sonar, then.light, then.compass), (now.sonar, now.light, robot.heading));
         }
     }

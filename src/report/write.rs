@@ -6,7 +6,7 @@ use super::figure::svg;
 use super::page::{self, DrawnFigure};
 use super::results::RunResults;
 use crate::run_folder::file_system::{Disk, FileSystem};
-use crate::run_folder::{FinishedRun, atomic, folder};
+use crate::run_folder::{FinishedRun, folder, writer};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -67,19 +67,19 @@ pub fn write_on(disk: Arc<dyn Disk>, dir: &Path) -> Result<WrittenReport, Report
     let _lock = folder::lock(&*disk, dir)?;
     let RenderedReport { figures, page, summary } = render(&run)?;
     let folder = dir.join(FIGURES);
-    atomic::make_folder(&*disk, &folder)?;
+    writer::make_folder(&*disk, &folder)?;
     for folder in [dir, &folder] {
-        atomic::remove_leftovers(&*disk, folder)?;
+        writer::remove_leftovers(&*disk, folder)?;
     }
     let mut files = Vec::new();
     for figure in figures {
         let path = folder.join(format!("{}.svg", figure.name));
-        atomic::place(&*disk, &path, figure.svg.as_bytes())?;
+        writer::place(&*disk, &path, figure.svg.as_bytes())?;
         files.push(path);
     }
-    atomic::sync_folder(&*disk, &folder)?;
+    writer::sync_folder(&*disk, &folder)?;
     let path = dir.join(PAGE);
-    atomic::write(&*disk, &path, page.as_bytes())?;
+    writer::write(&*disk, &path, page.as_bytes())?;
     files.push(path);
     Ok(WrittenReport { files, summary })
 }

@@ -2,7 +2,7 @@
 //!
 //! A run without such learners has no such file.
 
-use super::{FinishedRun, RecordError};
+use super::{FinishedRun, RecordError, json};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -111,8 +111,7 @@ impl TryFrom<Form> for Number {
 /// # Errors
 /// [`RecordError::Invalid`] if a value has no JSON form.
 pub fn write_failures(failures: &[Divergence]) -> Result<Vec<u8>, RecordError> {
-    let invalid = |error: serde_json::Error| RecordError::invalid(FILE, error.to_string());
-    Ok((serde_json::to_string_pretty(failures).map_err(invalid)? + "\n").into_bytes())
+    json::write(FILE, &failures, true)
 }
 
 /// Reads the content of `failures.json`; `path` is only for messages.
@@ -120,7 +119,7 @@ pub fn write_failures(failures: &[Divergence]) -> Result<Vec<u8>, RecordError> {
 /// # Errors
 /// [`RecordError::Damaged`] for anything but an array of failures.
 pub fn read_failures(bytes: &[u8], path: &Path) -> Result<Vec<Divergence>, RecordError> {
-    serde_json::from_slice(bytes).map_err(|error| RecordError::damaged(path, error.to_string()))
+    json::read(bytes, path)
 }
 
 /// The learners of a complete run that diverged.

@@ -1,8 +1,8 @@
 //! A complete run folder, verified and read only.
 
 use super::file_system::{Disk, FileSystem, Kind};
-use super::folder::{CONFIG, WORLD, tally};
 use super::manifest::FileDigest;
+use super::paths::{CONFIG, WORLD, list, tally};
 use super::{Manifest, RecordError};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -110,7 +110,7 @@ fn without_manifest(disk: &dyn Disk, dir: &Path) -> Result<RecordError, RecordEr
     let found = match disk.kind(dir).map_err(RecordError::unreadable(dir))? {
         None => " (there is no such folder)".to_owned(),
         Some(Kind::File) => " (it is a file)".to_owned(),
-        Some(Kind::Folder) => match super::atomic::list(disk, dir)?.first() {
+        Some(Kind::Folder) => match list(disk, dir)?.first() {
             Some(name) => format!(" (it holds `{name}`, and no manifest.json)"),
             None => " (it is empty)".to_owned(),
         },

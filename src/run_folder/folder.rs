@@ -1,24 +1,15 @@
 //! The run folder while a run writes to it.
 
-use super::atomic::read_if_there;
+use super::checksummed::{self, Refusal};
 use super::file_system::{Disk, FileSystem, Lock, TryLockError};
-use super::finishing::Finishing;
-use super::frame::{self, Refusal};
-use super::manifest::is_plain;
-use super::{FORMAT, Manifest, Provenance, RecordError, atomic};
+use super::paths::{CHECKPOINT, LOCK, MARKER, PARTS, is_free, is_plain, list, part_names, read_if_there};
+use super::{FORMAT, FinishedRun, Manifest, Provenance, RecordError, ResultsWriter, writer};
 use std::collections::BTreeSet;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Name of the resolved config in a run folder.
-pub const CONFIG: &str = "config.toml";
-/// Name of the config's own floor plan in a run folder.
-pub const WORLD: &str = "world.toml";
-const LOCK: &str = ".lock";
-const MARKER: &str = ".skilltree";
-const PARTS: &str = "parts";
-const CHECKPOINT: &str = "checkpoint";
+pub use super::paths::{CONFIG, WORLD};
 
 /// How far a run folder has come.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -76,11 +67,11 @@ impl RunFolder {
         let folders: BTreeSet<PathBuf> =
             given.iter().filter_map(|(name, _)| Some(dir.join(name).parent()?.into())).collect();
         for folder in folders.iter().chain([&dir.join(PARTS)]) {
-            atomic::remove_leftovers(on, folder)?;
+            writer::remove_leftovers(on, folder)?;
         }
         let complete = exists(on, &dir.join(Manifest::NAME))?;
         let started = complete || exists(on, &dir.join(CHECKPOINT))? || !part_names(on, dir)?.is_empty();
-        atomic_once(on, &dir.join(MARKER), format!("skilltree run folder, format {FORMAT}\n").as_bytes())?;
+        write_once(on, &dir.join(MARKER), format!("skilltree run folder, format {FORMAT}\n").as_bytes())?;
         for (name, text) in &given {
             let path = dir.join(name);
             match read_if_there(on, &path)? {
@@ -90,11 +81,11 @@ impl RunFolder {
                 None => write_below(on, &path, text.as_bytes())?,
             }
         }
-        let maker = frame::maker(&given);
+        let maker = checksummed::maker(&given);
         let given = given.iter().map(|(name, _)| (*name).to_owned()).collect();
         let mut folder = Self { disk, dir: dir.into(), given, maker, state: State::Fresh, _lock: lock };
         if complete {
-            super::FinishedRun::read_on(Arc::clone(&folder.disk), dir)?;
+            FinishedRun::read_on(Arc::clone(&folder.disk), dir)?;
             folder.state = State::Complete;
             folder.remove_parts();
         } else if started {
@@ -124,15 +115,15 @@ impl RunFolder {
     /// Commits one cohort's results under a name of letters, digits, `.`, `-`, `_`. Replaces a part of that name whole.
     ///
     /// # Errors
-    /// [`RecordError::Invalid`] for another name or a complete run; otherwise as [`atomic::write()`].
+    /// [`RecordError::Invalid`] for another name or a complete run; otherwise as [`writer::write()`].
     pub fn commit_part(&mut self, name: &str, content: &[u8]) -> Result<(), RecordError> {
         let path = self.part_path(name)?;
         if self.state == State::Complete {
             return Err(RecordError::invalid(name, "the run is complete and takes no more parts"));
         }
         let parts = self.dir.join(PARTS);
-        atomic::make_folder(&*self.disk, &parts)?;
-        frame::write(&self.disk, &path, &self.maker, &mut |file| file.write_all(content))?;
+        writer::make_folder(&*self.disk, &parts)?;
+        checksummed::write(&*self.disk, &path, &self.maker, &mut |file| file.write_all(content))?;
         self.state = State::Partial;
         Ok(())
     }
@@ -144,19 +135,19 @@ impl RunFolder {
     /// program or another plan left it.
     pub fn read_part(&self, name: &str) -> Result<Option<Vec<u8>>, RecordError> {
         let hint = "remove this file and give the same command again: only this part is computed anew";
-        self.read_framed(self.part_path(name)?, hint)
+        self.read_checksummed(self.part_path(name)?, hint)
     }
 
     /// Keeps what is needed to go on with the learners in training, in place of what was kept before; hands back its
     /// length in bytes.
     ///
     /// # Errors
-    /// As [`atomic::write()`].
+    /// As [`writer::write()`].
     pub fn write_checkpoint(
         &mut self,
         content: &mut dyn FnMut(&mut dyn Write) -> io::Result<()>,
     ) -> Result<u64, RecordError> {
-        let bytes = frame::write(&self.disk, &self.dir.join(CHECKPOINT), &self.maker, content)?;
+        let bytes = checksummed::write(&*self.disk, &self.dir.join(CHECKPOINT), &self.maker, content)?;
         self.state = State::Partial;
         Ok(bytes)
     }
@@ -166,7 +157,7 @@ impl RunFolder {
     /// # Errors
     /// [`RecordError::Damaged`] or [`RecordError::OtherProgram`] if it cannot be gone on from.
     pub fn read_checkpoint(&self) -> Result<Option<Vec<u8>>, RecordError> {
-        self.read_framed(self.dir.join(CHECKPOINT), "the learners that it held are trained anew")
+        self.read_checksummed(self.dir.join(CHECKPOINT), "the learners that it held are trained anew")
     }
 
     /// Removes the checkpoint: nobody is in training any more.
@@ -192,9 +183,9 @@ impl RunFolder {
         }
     }
 
-    fn read_framed(&self, path: PathBuf, hint: &'static str) -> Result<Option<Vec<u8>>, RecordError> {
+    fn read_checksummed(&self, path: PathBuf, hint: &'static str) -> Result<Option<Vec<u8>>, RecordError> {
         let Some(bytes) = read_if_there(&*self.disk, &path)? else { return Ok(None) };
-        match frame::open(bytes, &self.maker) {
+        match checksummed::read(bytes, &self.maker) {
             Ok(content) => Ok(Some(content)),
             Err(Refusal::Damaged(problem)) => Err(RecordError::Damaged { path, problem: problem.into(), hint }),
             Err(Refusal::Other(found)) => Err(RecordError::OtherProgram { path, found, known: self.maker.clone() }),
@@ -206,36 +197,34 @@ impl RunFolder {
     /// # Errors
     /// [`RecordError::Invalid`] if the run is complete; [`RecordError::Unreadable`] if a file of the experiment cannot
     /// be read back.
-    pub fn finishing(&self) -> Result<Finishing<'_>, RecordError> {
+    pub fn results(&self) -> Result<ResultsWriter<'_>, RecordError> {
         if self.state == State::Complete {
             return Err(RecordError::invalid(Manifest::NAME, "the run is already complete"));
         }
-        Finishing::new(self)
+        ResultsWriter::new(&*self.disk, &self.dir, &self.given)
     }
 
-    /// Writes the results, each whole, and the manifest, as [`Finishing`] does. The lock is given back.
+    /// Writes the manifest, which makes the run complete, then removes the parts.
     ///
     /// # Errors
-    /// Those of [`Finishing`].
+    /// As [`writer::write()`].
+    pub fn complete(&self, results: ResultsWriter<'_>, provenance: Provenance) -> Result<Manifest, RecordError> {
+        let manifest = results.manifest(provenance)?;
+        self.remove_parts();
+        Ok(manifest)
+    }
+
+    /// Writes all results and completes the run. The lock is given back.
+    ///
+    /// # Errors
+    /// Those of [`RunFolder::results`], [`ResultsWriter::add`] and [`RunFolder::complete`].
     pub fn finish<Files>(self, files: Files, provenance: Provenance) -> Result<Manifest, RecordError>
     where
         Files: IntoIterator<Item = (String, Vec<u8>)>,
     {
-        let mut finishing = self.finishing()?;
-        for (name, bytes) in files {
-            finishing.add(&name, &bytes)?;
-        }
-        finishing.complete(provenance)
-    }
-
-    /// Names of the files that the run was made from.
-    pub(super) fn given(&self) -> &[String] {
-        &self.given
-    }
-
-    /// Where the folder's files are.
-    pub(super) fn disk(&self) -> &Arc<dyn Disk> {
-        &self.disk
+        let mut results = self.results()?;
+        files.into_iter().try_for_each(|(name, bytes)| results.add(&name, &bytes))?;
+        self.complete(results, provenance)
     }
 
     fn part_path(&self, name: &str) -> Result<PathBuf, RecordError> {
@@ -247,7 +236,7 @@ impl RunFolder {
     }
 
     /// Best effort: parts of a complete run are only wasted space, and the next opening tries again.
-    pub(super) fn remove_parts(&self) {
+    fn remove_parts(&self) {
         for name in part_names(&*self.disk, &self.dir).unwrap_or_default() {
             let _ = self.disk.remove_file(&self.dir.join(PARTS).join(name));
         }
@@ -267,26 +256,6 @@ pub fn lock(disk: &dyn Disk, dir: &Path) -> Result<Lock, RecordError> {
     })
 }
 
-/// Learners whose results a folder's parts hold, and those of the whole run if there are parts, as their names say:
-/// `32-of-640_...`.
-///
-/// # Errors
-/// [`RecordError::Unreadable`] if the folder cannot be listed.
-pub fn tally(disk: &dyn Disk, dir: &Path) -> Result<(u64, Option<u64>), RecordError> {
-    let numbers = |name: &String| -> Option<(u64, u64)> {
-        let (finished, rest) = name.split_once("-of-")?;
-        Some((finished.parse().ok()?, rest.split('_').next()?.parse().ok()?))
-    };
-    let counts: Vec<(u64, u64)> = part_names(disk, dir)?.iter().filter_map(numbers).collect();
-    let finished = counts.iter().fold(0_u64, |sum, (finished, _)| sum.saturating_add(*finished));
-    Ok((finished, counts.first().map(|(_, of)| *of)))
-}
-
-/// Whether a file may have this path: one inside the folder that is not kept for ourselves.
-pub(super) fn is_free(name: &str) -> bool {
-    is_plain(name) && ![Manifest::NAME, CHECKPOINT].contains(&name) && name.split('/').next() != Some(PARTS)
-}
-
 /// The files that a run is made from: each is free and comes once, and one of them is the config's own world.
 fn check_names(given: &[(&str, &str)]) -> Result<(), RecordError> {
     let names: BTreeSet<&str> = given.iter().map(|(name, _)| *name).collect();
@@ -301,7 +270,7 @@ fn check_names(given: &[(&str, &str)]) -> Result<(), RecordError> {
 
 /// Makes the folder itself; what keeps it from being made, such as a file in its place, is a matter of `--out`.
 fn make_run_folder(disk: &dyn Disk, dir: &Path) -> Result<(), RecordError> {
-    atomic::make_folder(disk, dir).map_err(|error| match error {
+    writer::make_folder(disk, dir).map_err(|error| match error {
         RecordError::NotCommitted { path, source } => RecordError::Unwritable { path, source },
         other => other,
     })
@@ -310,9 +279,9 @@ fn make_run_folder(disk: &dyn Disk, dir: &Path) -> Result<(), RecordError> {
 /// Writes a file, and the folder that holds it if there is none.
 fn write_below(disk: &dyn Disk, path: &Path, bytes: &[u8]) -> Result<(), RecordError> {
     if let Some(folder) = path.parent() {
-        atomic::make_folder(disk, folder)?;
+        writer::make_folder(disk, folder)?;
     }
-    atomic::write(disk, path, bytes)
+    writer::write(disk, path, bytes)
 }
 
 fn exists(disk: &dyn Disk, path: &Path) -> Result<bool, RecordError> {
@@ -331,16 +300,12 @@ fn refuse_foreign(disk: &dyn Disk, dir: &Path) -> Result<(), RecordError> {
             None => Err(RecordError::damaged(&marker, "not the text that skilltree writes")),
         };
     }
-    match atomic::list(disk, dir)?.into_iter().find(|name| name != LOCK && !atomic::is_temporary(name)) {
+    match list(disk, dir)?.into_iter().find(|name| name != LOCK && !writer::is_temporary(name)) {
         Some(found) => Err(RecordError::Foreign { path: dir.into(), found }),
         None => Ok(()),
     }
 }
 
-fn atomic_once(disk: &dyn Disk, path: &Path, bytes: &[u8]) -> Result<(), RecordError> {
-    if exists(disk, path)? { Ok(()) } else { atomic::write(disk, path, bytes) }
-}
-
-fn part_names(disk: &dyn Disk, dir: &Path) -> Result<Vec<String>, RecordError> {
-    Ok(atomic::list(disk, &dir.join(PARTS))?.into_iter().filter(|name| is_plain(name)).collect())
+fn write_once(disk: &dyn Disk, path: &Path, bytes: &[u8]) -> Result<(), RecordError> {
+    if exists(disk, path)? { Ok(()) } else { writer::write(disk, path, bytes) }
 }

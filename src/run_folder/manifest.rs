@@ -1,7 +1,8 @@
 //! `manifest.json`: what made a run folder, and the length and hash of every file in it.
 
 use super::file_system::Disk;
-use super::{FORMAT, RecordError};
+use super::paths::is_plain;
+use super::{FORMAT, RecordError, json};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -54,16 +55,14 @@ pub struct Manifest {
 
 impl Manifest {
     /// The file's name.
-    pub const NAME: &'static str = "manifest.json";
+    pub const NAME: &'static str = super::paths::MANIFEST;
 
     /// JSON text, ending with a line feed.
     ///
     /// # Errors
     /// [`RecordError::Invalid`] if a value has no JSON form.
     pub fn to_bytes(&self) -> Result<Vec<u8>, RecordError> {
-        let text =
-            serde_json::to_string_pretty(self).map_err(|error| RecordError::invalid(Self::NAME, error.to_string()))?;
-        Ok((text + "\n").into_bytes())
+        json::write(Self::NAME, self, true)
     }
 
     /// Reads a manifest; `path` is only for messages.
@@ -76,27 +75,17 @@ impl Manifest {
         struct Version {
             format: serde_json::Value,
         }
-        let damaged = |error: serde_json::Error| RecordError::damaged(path, error.to_string());
-        let version: Version = serde_json::from_slice(bytes).map_err(damaged)?;
+        let version: Version = json::read(bytes, path)?;
         if version.format != serde_json::json!(FORMAT) {
             let found = version.format.to_string();
             return Err(RecordError::Format { path: path.into(), found, known: FORMAT });
         }
-        let manifest: Self = serde_json::from_slice(bytes).map_err(damaged)?;
+        let manifest: Self = json::read(bytes, path)?;
         match manifest.files.keys().find(|name| !is_plain(name)) {
             Some(name) => Err(RecordError::damaged(path, format!("lists `{name}`, which lies outside the folder"))),
             None => Ok(manifest),
         }
     }
-}
-
-/// Whether a path stays in its folder: words of ordinary characters with `/` between, none starting with a dot.
-pub(crate) fn is_plain(path: &str) -> bool {
-    path.split('/').all(|word| {
-        !word.is_empty()
-            && !word.starts_with('.')
-            && word.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '_' | '+' | '='))
-    })
 }
 
 impl FileDigest {

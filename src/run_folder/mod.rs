@@ -4,28 +4,30 @@
 //! Every file is committed whole (temporary file, fsync, rename), and `manifest.json` comes last: a folder that
 //! holds it is complete, and its hashes vouch for every other file. Files are reached through [`file_system`] alone.
 
-pub mod atomic;
+mod checksummed;
 mod error;
 pub mod failures;
 pub mod file_system;
 pub mod finished;
-pub mod finishing;
 pub mod folder;
-mod frame;
+mod json;
 pub mod manifest;
+mod paths;
+pub mod results_writer;
 pub mod sensor_readings;
-pub mod stream;
 pub mod sums;
 pub mod sweep;
 pub mod tables;
 pub mod trajectories;
 pub mod weights;
+pub mod writer;
 
 pub use error::RecordError;
 pub use failures::Divergence;
 pub use finished::FinishedRun;
 pub use folder::{RunFolder, State};
 pub use manifest::{Manifest, Provenance};
+pub use results_writer::ResultsWriter;
 pub use sensor_readings::PlaceReading;
 pub use sums::Sums;
 pub use sweep::Sweep;

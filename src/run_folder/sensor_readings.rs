@@ -1,6 +1,6 @@
 //! `places.json`: what the sensors read at the world's named places, without noise.
 
-use super::RecordError;
+use super::{RecordError, json};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -29,8 +29,7 @@ pub struct PlaceReading {
 /// # Errors
 /// [`RecordError::Invalid`] if a number has no JSON form.
 pub fn write_places(readings: &[PlaceReading]) -> Result<Vec<u8>, RecordError> {
-    let invalid = |error: serde_json::Error| RecordError::invalid("places.json", error.to_string());
-    Ok((serde_json::to_string_pretty(readings).map_err(invalid)? + "\n").into_bytes())
+    json::write(FILE, &readings, true)
 }
 
 /// Reads the content of `places.json`; `path` is only for messages.
@@ -38,8 +37,7 @@ pub fn write_places(readings: &[PlaceReading]) -> Result<Vec<u8>, RecordError> {
 /// # Errors
 /// [`RecordError::Damaged`] for anything but an array of readings with finite poses.
 pub fn read_places(bytes: &[u8], path: &Path) -> Result<Vec<PlaceReading>, RecordError> {
-    let damaged = |error: serde_json::Error| RecordError::damaged(path, error.to_string());
-    let readings: Vec<PlaceReading> = serde_json::from_slice(bytes).map_err(damaged)?;
+    let readings: Vec<PlaceReading> = json::read(bytes, path)?;
     match readings.iter().find(|r| !(r.x.is_finite() && r.y.is_finite() && r.heading.is_finite())) {
         Some(reading) => Err(RecordError::damaged(path, format!("the pose of `{}` is not finite", reading.place))),
         None => Ok(readings),

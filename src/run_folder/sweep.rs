@@ -5,7 +5,7 @@
 
 pub use crate::config::plan::{Axis, AxisValue, Design, Scale, Sweep};
 
-use super::RecordError;
+use super::{RecordError, json};
 use std::path::Path;
 
 /// The file's name in a run folder.
@@ -16,8 +16,7 @@ pub const FILE: &str = "sweep.json";
 /// # Errors
 /// [`RecordError::Invalid`] if a number has no JSON form.
 pub fn write_sweep(sweep: &Sweep) -> Result<Vec<u8>, RecordError> {
-    let invalid = |error: serde_json::Error| RecordError::invalid(FILE, error.to_string());
-    Ok((serde_json::to_string(sweep).map_err(invalid)? + "\n").into_bytes())
+    json::write(FILE, sweep, false)
 }
 
 /// Reads the content of `sweep.json`; `path` is only for messages.
@@ -25,7 +24,7 @@ pub fn write_sweep(sweep: &Sweep) -> Result<Vec<u8>, RecordError> {
 /// # Errors
 /// [`RecordError::Damaged`] for anything but axes with values, and points that have one of its values on each axis.
 pub fn read_sweep(bytes: &[u8], path: &Path) -> Result<Sweep, RecordError> {
-    let sweep: Sweep = serde_json::from_slice(bytes).map_err(|error| RecordError::damaged(path, error.to_string()))?;
+    let sweep: Sweep = json::read(bytes, path)?;
     if sweep.axes.is_empty() || sweep.points.is_empty() {
         return Err(RecordError::damaged(path, "a sweep without axes or without points"));
     }

@@ -1,6 +1,6 @@
 //! `trajectories.json`: example trials, step by step.
 
-use super::RecordError;
+use super::{RecordError, json};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -46,8 +46,7 @@ pub struct TrajectoryPoint {
 /// # Errors
 /// [`RecordError::Invalid`] if a number has no JSON form.
 pub fn write_trajectories(trajectories: &[Trajectory]) -> Result<Vec<u8>, RecordError> {
-    let invalid = |error: serde_json::Error| RecordError::invalid(FILE, error.to_string());
-    Ok((serde_json::to_string(trajectories).map_err(invalid)? + "\n").into_bytes())
+    json::write(FILE, &trajectories, false)
 }
 
 /// Reads the content of `trajectories.json`; `path` is only for messages.
@@ -55,8 +54,7 @@ pub fn write_trajectories(trajectories: &[Trajectory]) -> Result<Vec<u8>, Record
 /// # Errors
 /// [`RecordError::Damaged`] for anything but an array of trajectories with finite poses and known children.
 pub fn read_trajectories(bytes: &[u8], path: &Path) -> Result<Vec<Trajectory>, RecordError> {
-    let damaged = |error: serde_json::Error| RecordError::damaged(path, error.to_string());
-    let trajectories: Vec<Trajectory> = serde_json::from_slice(bytes).map_err(damaged)?;
+    let trajectories: Vec<Trajectory> = json::read(bytes, path)?;
     let sound = |trajectory: &Trajectory| {
         let point = |p: &TrajectoryPoint| {
             p.x.is_finite()

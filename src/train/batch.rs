@@ -6,15 +6,16 @@
 
 use super::batch_group::{BatchGroup, LearnerId};
 use super::callbacks::{Callbacks, Interrupted};
-use super::checkpoint::CohortState;
+use super::cohort_state::CohortState;
 use super::divergence::divergence_of;
+use super::nets::pack;
 use super::pretraining::Pretrained;
 use super::result::LearnerResult;
 use super::thresholds::fit;
 use super::train_loop::{Evaluation, TrainLoop};
 use crate::backend::{Backend, Cohort, Stop};
 use crate::config::plan::{Child, Plan, Threshold};
-use crate::layout::{LANES, PHASE_FAILED, SkillShape, TRIAL_WORDS};
+use crate::layout::{PHASE_FAILED, TRIAL_WORDS};
 use crate::run_folder::Divergence;
 
 /// Trains the skills below the roots of some learners, or goes on with them from where they were saved.
@@ -191,34 +192,4 @@ fn without_lessons(cohort: &Cohort) -> Cohort {
 
 fn rows_of(cohort: &Cohort, learner: usize) -> &[u32] {
     &cohort.rows[learner * cohort.rows_stride..][..cohort.states[learner].rows as usize * TRIAL_WORDS]
-}
-
-/// The weights of a learner's nets, without what the optimiser keeps beside them.
-fn pack(nets: &[f32], skills: &[SkillShape]) -> Vec<f32> {
-    places(skills).flat_map(|(at, slab)| &nets[at..at + slab]).copied().collect()
-}
-
-/// A learner's nets from their weights; what the optimiser keeps is 0.
-pub fn unpack(weights: &[f32], skills: &[SkillShape], stride: usize) -> Vec<f32> {
-    let mut nets = vec![0.0; stride];
-    let mut rest = weights;
-    for (at, slab) in places(skills) {
-        let (own, others) = rest.split_at(slab.min(rest.len()));
-        nets[at..at + own.len()].copy_from_slice(own);
-        rest = others;
-    }
-    nets
-}
-
-/// Number of the weights of a learner's nets.
-pub(super) fn weight_count(skills: &[SkillShape]) -> usize {
-    places(skills).map(|(_, slab)| slab).sum()
-}
-
-/// First word and size of the weights of every net. A mirror image has none of its own.
-fn places(skills: &[SkillShape]) -> impl Iterator<Item = (usize, usize)> {
-    skills.iter().filter(|skill| skill.mirrored == 0).flat_map(|skill| {
-        let slab = skill.rows as usize * LANES;
-        (0..skill.nets as usize).map(move |net| (skill.net_offset(net as u32), slab))
-    })
 }

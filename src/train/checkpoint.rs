@@ -3,15 +3,13 @@
 //! One cohort is in training at a time: the skills that arms share are learned, or some arms' learners go on from them. A
 //! learner's whole position is in its memory, so going on is training as ever, without the tests that are taken already.
 
-use super::batch_group::{BatchGroup, LearnerId};
+use super::batch_group::BatchGroup;
 use super::callbacks::{Callbacks, Signal, Snapshot};
-use super::codec::{self, PartError, pod};
+use super::codec::{self, PartError};
+use super::cohort_state::CohortState;
 use super::pretraining::Pretraining;
-use super::result::LearnerResult;
 use super::validate;
-use crate::backend::Cohort;
 use crate::config::plan::Plan;
-use crate::layout::LearnerState;
 use crate::run_folder::{RecordError, RunFolder};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -21,55 +19,6 @@ use std::time::{Duration, Instant};
 pub const INTERVAL: Duration = Duration::from_secs(60);
 /// Saving takes at most one part in so many of the time.
 const SHARE: u32 = 10;
-
-/// A cohort as it is saved. Its hyper-parameters and shapes are not kept: they follow from the plan and from what the
-/// learners go on from.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct CohortState<'a> {
-    /// The tests taken so far; after training, all that the learners leave.
-    pub results: Cow<'a, [LearnerResult]>,
-    /// Whether training is over, so that only tests under alterations are to come. Lessons and rows are then not kept.
-    pub trained: bool,
-    #[serde(with = "pod")]
-    pub(super) states: Cow<'a, [LearnerState]>,
-    #[serde(with = "pod")]
-    pub(super) nets: Cow<'a, [f32]>,
-    #[serde(with = "pod")]
-    pub(super) lessons: Cow<'a, [u32]>,
-    #[serde(with = "pod")]
-    pub(super) rows: Cow<'a, [u32]>,
-}
-
-impl<'a> CohortState<'a> {
-    fn of(snapshot: &Snapshot<'a>) -> Self {
-        let Snapshot { results, cohort, trained } = *snapshot;
-        let kept = |words: &'a [u32]| Cow::Borrowed(if trained { &words[..0] } else { words });
-        Self {
-            results: Cow::Borrowed(results),
-            trained,
-            states: Cow::Borrowed(&cohort.states),
-            nets: Cow::Borrowed(&cohort.nets),
-            lessons: kept(&cohort.lessons),
-            rows: kept(&cohort.rows),
-        }
-    }
-
-    /// The learners, in their order.
-    pub fn learners(&self) -> Vec<LearnerId> {
-        self.results.iter().map(|result| result.id).collect()
-    }
-
-    /// Puts the learners back into a cohort of the same ones, and hands over what they leave so far.
-    pub fn restore(self, cohort: &mut Cohort) -> Vec<LearnerResult> {
-        cohort.states = self.states.into_owned();
-        cohort.nets = self.nets.into_owned();
-        if !self.trained {
-            cohort.lessons = self.lessons.into_owned();
-            cohort.rows = self.rows.into_owned();
-        }
-        self.results.into_owned()
-    }
-}
 
 /// What a checkpoint file holds.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

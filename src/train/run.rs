@@ -3,7 +3,8 @@
 use super::batch::{pretrain, train};
 use super::batch_group::{BatchGroup, LearnerId, group_of};
 use super::callbacks::{Callbacks, Interrupted};
-use super::checkpoint::{Checkpoint, CohortCallbacks, CohortState, INTERVAL, SaveTimer};
+use super::checkpoint::{Checkpoint, CohortCallbacks, INTERVAL, SaveTimer};
+use super::cohort_state::CohortState;
 use super::committed::Parts;
 use super::pretraining::{Pretrained, Pretraining, SharedSkills, shared_skills};
 use super::schedule::{Wave, going_on, trials_of, waves};

@@ -1,7 +1,7 @@
 //! Example trajectories: what the first seed's learner of each arm does from the world's named places.
 
-use super::batch::unpack;
 use super::batch_group::BatchGroup;
+use super::nets::unpack;
 use super::result::LearnerResult;
 use crate::backend::cpu::CPU;
 use crate::config::plan::Plan;

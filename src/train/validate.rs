@@ -1,8 +1,8 @@
 //! Whether what was read back can be of this experiment, so that nothing goes on from anything else.
 
-use super::batch::weight_count;
 use super::batch_group::{BatchGroup, LearnerId, group_of};
-use super::checkpoint::CohortState;
+use super::cohort_state::CohortState;
+use super::nets::weight_count;
 use super::pretraining::{Pretrained, Pretraining};
 use super::result::{LearnerResult, TestResult};
 use crate::config::plan::{ArmPlan, Plan};

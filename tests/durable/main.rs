@@ -185,7 +185,7 @@ fn a_kill_costs_little_more_than_an_interval() {
 
 /// A file in the frame that the program uses, by whoever.
 fn framed(maker: &str, content: &[u8]) -> Vec<u8> {
-    let mut bytes = b"SKLPART2".to_vec();
+    let mut bytes = b"SKLPART3".to_vec();
     bytes.extend((maker.len() as u32).to_le_bytes());
     bytes.extend(maker.as_bytes());
     bytes.extend(content);
@@ -215,7 +215,7 @@ fn a_checkpoint_that_cannot_be_used_is_set_aside_and_nothing_is_lost() {
         (flipped, "damaged"),
         (b"notes of mine".to_vec(), "damaged"),
         (framed(&maker, &content[..content.len() - 4]), "damaged"),
-        (framed("skilltree 9.9.9, format 2, plan 0", content), "written by skilltree 9.9.9"),
+        (framed("skilltree 9.9.9, format 3, plan 0", content), "written by skilltree 9.9.9"),
     ];
     for (number, (bytes, said)) in cases.iter().enumerate() {
         fs::write(&path, bytes).unwrap();
@@ -253,7 +253,7 @@ fn parts_of_another_program_are_not_mixed_in() {
     let part = parts().remove(0);
     let own = fs::read(&part).unwrap();
     let content = &own[12 + own[8] as usize..own.len() - 40];
-    fs::write(&part, framed("skilltree 0.0.9, format 2, plan 0", content)).unwrap();
+    fs::write(&part, framed("skilltree 0.0.9, format 3, plan 0", content)).unwrap();
     // What a killed process leaves half written is cleared away.
     let kept = || tree(&out).into_iter().filter(|(name, _)| !name.contains("skilltree-tmp")).collect::<Vec<_>>();
     let before = kept();

@@ -1,21 +1,21 @@
-//! The frame round what a run keeps for itself until it is complete: parts and the checkpoint.
+//! Files that a run keeps for itself until it is complete, parts and the checkpoint, with their length and checksum.
 //!
 //! Eight bytes, the length of the maker's text (u32, little-endian) and the text, the content; then the number of all
 //! bytes so far (u64) and their SHA-256. The maker is the program and the plan: results of two programs never mix.
 
 use super::file_system::Disk;
-use super::stream::Stream;
-use super::{FORMAT, RecordError, atomic};
+use super::manifest::hexadecimal;
+use super::writer::{FileWriter, sync_folder};
+use super::{FORMAT, RecordError};
 use sha2::{Digest, Sha256};
 use std::io::{self, Write};
 use std::path::Path;
-use std::sync::Arc;
 
-const MAGIC: &[u8; 8] = b"SKLPART2";
+const MAGIC: &[u8; 8] = b"SKLPART3";
 const HEAD: usize = 8 + 4;
 const TRAILER: usize = 8 + 32;
 
-/// Why framed bytes are not accepted.
+/// Why a file is not accepted.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Refusal {
     /// Cut, altered, or never one of ours.
@@ -33,29 +33,33 @@ pub(super) fn maker(given: &[(&str, &str)]) -> String {
             hasher.update(part);
         }
     }
-    let plan = super::manifest::hexadecimal(&hasher.finalize()[..8]);
+    let plan = hexadecimal(&hasher.finalize()[..8]);
     let commit = option_env!("SKILLTREE_COMMIT").map_or_else(String::new, |commit| format!(", commit {commit:.12}"));
     format!("skilltree {}{commit}, format {FORMAT}, plan {plan}", env!("CARGO_PKG_VERSION"))
 }
 
-/// Writes a framed file whole and asks the disk to keep it; hands back its length.
+/// Writes a file whole and asks the disk to keep it; hands back its length.
 ///
 /// # Errors
-/// As [`atomic::write()`].
+/// As [`super::writer::write()`].
 pub(super) fn write(
-    disk: &Arc<dyn Disk>,
+    disk: &dyn Disk,
     path: &Path,
     maker: &str,
     content: &mut dyn FnMut(&mut dyn Write) -> io::Result<()>,
 ) -> Result<u64, RecordError> {
-    let mut file = Stream::create(disk, path)?;
+    let mut file = FileWriter::create(disk, path)?;
     fill(&mut file, maker, content).map_err(RecordError::not_committed(path))?;
     let digest = file.place()?;
-    atomic::sync_folder(&**disk, path.parent().unwrap_or(Path::new(".")))?;
+    sync_folder(disk, path.parent().unwrap_or(Path::new(".")))?;
     Ok(digest.bytes)
 }
 
-fn fill(file: &mut Stream, maker: &str, content: &mut dyn FnMut(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+fn fill(
+    file: &mut FileWriter<'_>,
+    maker: &str,
+    content: &mut dyn FnMut(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
     file.write_all(MAGIC)?;
     file.write_all(&(maker.len() as u32).to_le_bytes())?;
     file.write_all(maker.as_bytes())?;
@@ -65,8 +69,8 @@ fn fill(file: &mut Stream, maker: &str, content: &mut dyn FnMut(&mut dyn Write) 
     file.write_all(&hash)
 }
 
-/// The content of framed bytes.
-pub(super) fn open(mut bytes: Vec<u8>, maker: &str) -> Result<Vec<u8>, Refusal> {
+/// The content of a file of this maker's, from its bytes.
+pub(super) fn read(mut bytes: Vec<u8>, maker: &str) -> Result<Vec<u8>, Refusal> {
     let Some(end) = bytes.len().checked_sub(TRAILER).filter(|end| *end >= HEAD) else {
         return Err(Refusal::Damaged("cut within its frame"));
     };
