@@ -2,10 +2,11 @@
 
 use crate::backend::Backend;
 use crate::config::plan::Plan;
-use crate::config::{ConfigError, Overrides, load};
+use crate::config::{ConfigError, Files, OsFiles, Overrides, load_from};
 use crate::run_folder::{FinishedRun, Provenance, RecordError, RunFolder, State};
-use crate::train::batch_group::{Group, SetupError, groups};
-use crate::train::run::{Observer, Options, RunError, run};
+use crate::train::batch_group::{BatchGroup, SetupError, groups};
+use crate::train::callbacks::{Callbacks, Signal};
+use crate::train::run::{Options, RunError, run};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -46,7 +47,15 @@ impl Experiment {
     /// # Errors
     /// [`ConfigError`] says where the file is wrong, and what would be right.
     pub fn load(config: impl AsRef<Path>, overrides: &Overrides) -> Result<Self, ConfigError> {
-        Ok(Self { plan: load(config.as_ref(), overrides)? })
+        Self::load_from(&OsFiles, config, overrides)
+    }
+
+    /// The same from any source of files, such as [`MemoryFiles`](crate::MemoryFiles).
+    ///
+    /// # Errors
+    /// As [`Experiment::load`].
+    pub fn load_from(files: &dyn Files, config: impl AsRef<Path>, overrides: &Overrides) -> Result<Self, ConfigError> {
+        Ok(Self { plan: load_from(files, config.as_ref(), overrides)? })
     }
 
     /// All that the config says, with every default and derived size.
@@ -61,7 +70,8 @@ impl Experiment {
 
     /// Training trials of all learners together.
     pub fn trials(&self) -> u64 {
-        let trials: u64 = self.plan.arms.iter().flat_map(|arm| &arm.skills).map(|skill| u64::from(skill.trials)).sum();
+        let trials: u64 =
+            self.plan.arms.iter().flat_map(|arm| &arm.skills).map(|skill| u64::from(skill.params.trials)).sum();
         trials * self.plan.seeds.len() as u64
     }
 
@@ -82,8 +92,8 @@ impl Experiment {
             drop(folder);
         } else {
             let groups = groups(&self.plan)?;
-            let mut observer = ProgressCallback { call: progress, trials: self.trials(), stop: false };
-            self.train(&groups, folder, backend, Options::default(), &mut observer)?;
+            let mut callback = ProgressCallback { call: progress, trials: self.trials() };
+            self.train(&groups, folder, backend, Options::default(), &mut callback)?;
         }
         Ok(FinishedRun::read(out.as_ref())?)
     }
@@ -100,14 +110,14 @@ impl Experiment {
     /// Trains every learner that the folder does not hold yet, and completes the folder.
     ///
     /// # Errors
-    /// Where the folder or the device fails, or the observer stops it.
+    /// Where the folder or the device fails, or the callbacks stop it.
     pub fn train(
         &self,
-        groups: &[Group],
+        groups: &[BatchGroup],
         folder: RunFolder,
         backend: &mut dyn Backend,
         options: Options,
-        observer: &mut dyn Observer,
+        callbacks: &mut dyn Callbacks,
     ) -> Result<(), RunError> {
         let provenance = Provenance {
             version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -119,7 +129,7 @@ impl Experiment {
             finished: None,
             notes: BTreeMap::from([("executed by".to_owned(), backend.describe())]),
         };
-        run(&self.plan, groups, folder, backend, options, provenance, observer)
+        run(&self.plan, groups, folder, backend, options, provenance, callbacks)
     }
 }
 
@@ -127,17 +137,13 @@ impl Experiment {
 struct ProgressCallback<F> {
     call: F,
     trials: u64,
-    stop: bool,
 }
 
-impl<F: FnMut(Progress) -> ControlFlow<()>> Observer for ProgressCallback<F> {
-    fn trials(&mut self, finished: u64) {
-        self.stop |= (self.call)(Progress { finished, trials: self.trials }).is_break();
-    }
-
-    fn committed(&mut self, _finished: usize) {}
-
-    fn stop(&mut self) -> bool {
-        self.stop
+impl<F: FnMut(Progress) -> ControlFlow<()>> Callbacks for ProgressCallback<F> {
+    fn progress(&mut self, finished: u64) -> Signal {
+        match (self.call)(Progress { finished, trials: self.trials }) {
+            ControlFlow::Continue(()) => Signal::Continue,
+            ControlFlow::Break(()) => Signal::Stop,
+        }
     }
 }

@@ -102,7 +102,7 @@ fn a_learner_that_fails_leaves_the_bytes_of_the_cpu() {
     let _alone = alone();
     let mut cohort = lean();
     for params in &mut cohort.params[1..] {
-        params.rate = 3.0e38;
+        params.learning_rate = 3.0e38;
     }
     let expected = on_cpu(&cohort);
     let after = &expected.cohorts()[0];

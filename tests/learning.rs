@@ -228,7 +228,7 @@ fn compare(what: &str, found: &[f64], expected: &[f64], share: f64) -> usize {
 #[test]
 fn q_values_match_plain_f64_nets() {
     for (init, hidden) in [("0.1", "32"), ("0.5", "20"), ("1.5", "1"), ("2.0", "32")] {
-        let set = [format!("learning.init={init}"), format!("learning.hidden={hidden}")];
+        let set = [format!("learning.init_range={init}"), format!("learning.hidden={hidden}")];
         let mut bench = Bench::new(&[&set[0], &set[1]]);
         let mut next = random(3);
         let mut spread = 0.0_f64;
@@ -263,9 +263,9 @@ fn one_replayed_transition_descends_the_gradient() {
     for (child, reward) in [(0, 90.0), (1, -70.0), (2, 20.0), (3, 0.0), (4, -99.0), (5, 60.0)] {
         let hidden = if child % 2 == 0 { 20 } else { 12 };
         let units = format!("learning.hidden={hidden}");
-        let set = ["learning.optimiser=\"sgd\"", "learning.momentum=0.0", &units, "learning.init=0.3"];
+        let set = ["learning.optimiser=\"sgd\"", "learning.momentum=0.0", &units, "learning.init_range=0.3"];
         let mut bench = Bench::new(&set);
-        bench.params[0].rate = 256.0;
+        bench.params[0].learning_rate = 256.0;
         bench.params[0].beta1 = 0.0;
         let step = Step { senses: made_up(&mut next), child, allowed: ALL, reward };
         bench.keep(&Lesson { steps: vec![step], last: made_up(&mut next), end: ENDED });
@@ -300,8 +300,8 @@ fn one_replayed_transition_descends_the_gradient() {
 
 #[test]
 fn momentum_carries_the_last_change_on() {
-    let mut bench = Bench::new(&["learning.optimiser=\"sgd\"", "learning.momentum=0.5", "learning.init=0.3"]);
-    bench.params[0].rate = 0.25;
+    let mut bench = Bench::new(&["learning.optimiser=\"sgd\"", "learning.momentum=0.5", "learning.init_range=0.3"]);
+    bench.params[0].learning_rate = 0.25;
     bench.params[0].beta1 = 0.5;
     let mut next = random(5);
     let skill = bench.shared.skills[0];
@@ -309,10 +309,10 @@ fn momentum_carries_the_last_change_on() {
     encode(&bench.shared, &mut scratch, &skill, false);
     forward(&bench.nets, &mut scratch, &skill, &bench.params[0], 0);
     let start = Net::of(&bench, 2);
-    backward(&mut bench.nets, &mut scratch, &skill, &bench.params[0], 0, 2, 0.5, bench.params[0].rate);
+    backward(&mut bench.nets, &mut scratch, &skill, &bench.params[0], 0, 2, 0.5, bench.params[0].learning_rate);
     let one = Net::of(&bench, 2);
     // Nothing new to learn: only the momentum moves the weights, half as far.
-    backward(&mut bench.nets, &mut scratch, &skill, &bench.params[0], 0, 2, 0.0, bench.params[0].rate);
+    backward(&mut bench.nets, &mut scratch, &skill, &bench.params[0], 0, 2, 0.0, bench.params[0].learning_rate);
     let two = Net::of(&bench, 2);
     let moved = |a: &Net, b: &Net| a.0.iter().zip(&b.0).map(|(a, b)| b - a).collect::<Vec<f64>>();
     let first = moved(&start, &one);
@@ -340,11 +340,11 @@ fn adam_of_rows_follows_the_formula_with_the_mean_square_of_each_row() {
 
 fn adam_follows_the_formula(optimiser: &str, hidden: &str, epsilon: &str, rate: &str) {
     let (of_optimiser, of_hidden) = (format!("learning.optimiser={optimiser}"), format!("learning.hidden={hidden}"));
-    let (of_epsilon, of_rate) = (format!("learning.epsilon={epsilon}"), format!("learning.rate={rate}"));
-    let mut bench = Bench::new(&[&of_optimiser, &of_hidden, "learning.init=0.3", &of_epsilon, &of_rate]);
+    let (of_epsilon, of_rate) = (format!("learning.epsilon={epsilon}"), format!("learning.learning_rate={rate}"));
+    let mut bench = Bench::new(&[&of_optimiser, &of_hidden, "learning.init_range=0.3", &of_epsilon, &of_rate]);
     let (epsilon, given): (f32, f32) = (epsilon.parse().expect("a number"), rate.parse().expect("a number"));
     let params = bench.params[0];
-    let (rate, beta1, beta2) = (f64::from(params.rate), f64::from(params.beta1), f64::from(params.beta2));
+    let (rate, beta1, beta2) = (f64::from(params.learning_rate), f64::from(params.beta1), f64::from(params.beta2));
     let epsilon2 = f64::from(params.epsilon2);
     assert_eq!((rate, beta1, beta2), (f64::from(given), f64::from(0.9_f32), f64::from(0.999_f32)));
     assert_eq!(epsilon2, f64::from(epsilon * epsilon));
@@ -414,15 +414,15 @@ fn exact(lambda: f32) -> Bench {
         bench.nets[net + (skill.inputs as usize + 1) * LANES + bumper] = weight;
     }
     let params = &mut bench.params[0];
-    params.rate = HARDLY;
+    params.learning_rate = HARDLY;
     params.beta1 = 0.0;
     params.gamma = 0.5;
     params.lambda = lambda;
     params.value_scale = 1.0 / 64.0;
-    params.target_limit = 0.875;
+    params.target_clip = 0.875;
     params.policy_threshold = 0.0;
     params.inverse_temperature_start = 20.0;
-    params.taught_always = 0;
+    params.taught_as_policy = 0;
     params.timeout_terminal = 0;
     bench
 }
@@ -495,7 +495,7 @@ fn five_step_returns_are_the_ones_computed_by_hand() {
     // Targets are clipped, and it is the clipped one that is handed on.
     for (limit, sign) in [(0.5, 1.0_f32), (0.5, -1.0)] {
         let mut clipped = exact(1.0);
-        clipped.params[0].target_limit = limit;
+        clipped.params[0].target_clip = limit;
         let tail = [-0.03125_f32, -0.0625, 0.125, 0.25, 0.5].map(|u| u * sign);
         // With a loss at the end: -0.5, -0.25, -0.125, -0.125 - 0.0625, half of that.
         let loss = [-0.09375, -0.1875, -0.125, -0.25, -0.5];
@@ -528,7 +528,7 @@ fn steps_that_are_no_policy_cut_the_chain() {
     for (taught, learned, returns) in [(1, all, full), (0, [true, true, false, true, false], returns)] {
         let mut bench = exact(1.0);
         bench.params[0].policy_threshold = 0.03;
-        bench.params[0].taught_always = 1;
+        bench.params[0].taught_as_policy = 1;
         expect(&mut bench, &goal, taught, returns, learned, "taught always");
     }
     // A masked child is not what the best value is about: without child 0 the best in front of the wall is 0.
@@ -546,12 +546,12 @@ fn returns_of_random_lessons_match_the_forward_view() {
     for round in 0..300 {
         let lambda: f64 = [0.0, 0.3, 0.8, 0.95, 1.0][round % 5];
         let gamma: f64 = [0.9, 0.95, 1.0][round % 3];
-        let mut bench = Bench::new(&["learning.optimiser=\"sgd\"", "learning.init=0.4"]);
+        let mut bench = Bench::new(&["learning.optimiser=\"sgd\"", "learning.init_range=0.4"]);
         let params = &mut bench.params[0];
-        (params.rate, params.beta1) = (HARDLY, 0.0);
+        (params.learning_rate, params.beta1) = (HARDLY, 0.0);
         (params.lambda, params.gamma) = (lambda as f32, gamma as f32);
-        (params.target_limit, params.policy_threshold, params.inverse_temperature_start) = (1.0e6, 0.05, 5.0);
-        (params.taught_always, params.timeout_terminal) = (0, u32::from(round % 7 == 0));
+        (params.target_clip, params.policy_threshold, params.inverse_temperature_start) = (1.0e6, 0.05, 5.0);
+        (params.taught_as_policy, params.timeout_terminal) = (0, u32::from(round % 7 == 0));
         let terminal = params.timeout_terminal == 1;
         let count = 1 + (next() * 30.0) as usize;
         let step = |next: &mut dyn FnMut() -> f64| Step {
@@ -611,7 +611,7 @@ fn replayed_lessons_have_exponential_ages_cut_at_the_oldest() {
     for (memory, mean, remembered) in
         [(300, 100.0, 1), (300, 100.0, 2), (300, 100.0, 150), (50, 10.0, 50), (50, 10.0, 173), (40, 500.0, 99)]
     {
-        let set = [format!("learning.memory={memory}"), format!("learning.mean_age={mean:?}")];
+        let set = [format!("learning.replay_capacity={memory}"), format!("learning.replay_mean_age={mean:?}")];
         let mut bench = Bench::new(&[&set[0], &set[1]]);
         bench.state.remembered = remembered;
         let stride = bench.shared.skills[0].lesson_stride;
@@ -730,20 +730,20 @@ fn small() -> Plan {
         at = []
         episodes = 1
         [teacher]
-        bank = 8
-        episodes = 1
+        lessons = 8
+        eval_episodes = 1
         [learning]
         replays = 4
-        memory = 3
-        taught_passes = 2
+        replay_capacity = 3
+        pretrain_epochs = 2
         taught_replays = 2
         [skill.dock]
         inputs = ["sonar(60)", "light", "bumpers"]
         children = ["turn+15", "turn-15", "turn+60", "turn-60", "move+12", "move-12"]
         reward = {{ docked = 100, collision = -10 }}
         starts = {{ light-area = 1.0 }}
-        tests = "light-area"
-        ends = ["docked"]
+        eval_starts = "light-area"
+        goal = ["docked"]
         max_steps = 25
         lessons = 2
         trials = 6
@@ -752,8 +752,8 @@ fn small() -> Plan {
         children = ["turn+15", "dock", "move+12"]
         reward = {{ docked = 50, collision = -20 }}
         starts = {{ anywhere = 1.0 }}
-        tests = "anywhere"
-        ends = ["docked"]
+        eval_starts = "anywhere"
+        goal = ["docked"]
         max_steps = 12
         lessons = 0
         trials = 4
@@ -762,7 +762,7 @@ fn small() -> Plan {
         timeout_terminal = false
         mask_blocked = false
         optimiser = "sgd"
-        rate = 0.05
+        learning_rate = 0.05
         "#
     );
     let folder = tempfile::tempdir().expect("a folder for the config");

@@ -101,7 +101,7 @@ fn shipped_kernels_leave_the_bytes_of_the_cpu() {
 fn records(cohort: &Cohort, skill: usize) -> Vec<&[u32]> {
     let plan = &cohort.shared.skills[skill];
     let slots = cohort.lessons.chunks(cohort.lessons_stride).flat_map(|own| {
-        let memory = cohort.params[skill].memory as usize * plan.lesson_stride as usize;
+        let memory = cohort.params[skill].replay_capacity as usize * plan.lesson_stride as usize;
         own[plan.memory_offset as usize..][..memory].chunks(plan.lesson_stride as usize)
     });
     slots.flat_map(|slot| slot[LESSON_HEADER..].chunks(RECORD_WORDS).take(slot[0] as usize + 1)).collect()

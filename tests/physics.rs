@@ -7,7 +7,6 @@ use oracle::{Field, P, Written, ahead, office, stream};
 use skilltree::backend::Backend;
 use skilltree::backend::cpu::CpuBackend;
 use skilltree::backend::parity::{self, UNWRITTEN};
-use skilltree::config::plan::{Noise, NoiseKind};
 use skilltree::env::contact::{bumpers, sweep};
 use skilltree::env::events::{passed_door, room_of};
 use skilltree::env::light::in_sight;
@@ -15,10 +14,12 @@ use skilltree::env::motion::{BACKWARD, COLLISION, DOCKED, FORWARD, Moved, NO_ACT
 use skilltree::env::segments::{LISTED_TRAVEL, SegmentGrid};
 use skilltree::env::sonar::{ranges, rays};
 use skilltree::env::workgroup::CohortData;
+use skilltree::layout::Noise;
+use skilltree::layout::choices::{NOISE_GAUSSIAN, NOISE_UNIFORM};
 use skilltree::layout::{BASE_WORDS, RAYS, Robot};
 use skilltree::math::functions::sin_cos;
 use skilltree::math::rng::place_of;
-use skilltree::train::observation::{SILENT, Senses, floor_only, robot_at};
+use skilltree::train::observation::{Observation, SILENT, floor_only, robot_at};
 use skilltree::world::{Pose, World};
 
 /// What the brief allows between f32 and exact geometry, inches.
@@ -130,10 +131,10 @@ fn cpu() -> CpuBackend {
 }
 
 /// What a robot without noise senses, through the shipped kernel.
-fn sense(shared: &CohortData, poses: &[Pose]) -> Vec<Senses> {
+fn sense(shared: &CohortData, poses: &[Pose]) -> Vec<Observation> {
     let mut robots: Vec<Robot> = poses.iter().map(|pose| robot_at(*pose, &SILENT, 1, 2)).collect();
     cpu().step(shared, &mut robots, 1).expect("the CPU steps");
-    robots.iter().map(Senses::of).collect()
+    robots.iter().map(Observation::of).collect()
 }
 
 fn at(pose: Pose) -> P {
@@ -677,12 +678,12 @@ fn crowd(action: u32, noise: &Noise, count: u32) -> Vec<Robot> {
 #[test]
 fn noise_has_the_stated_mean_deviation_and_bounds() {
     let count = 60_000;
-    for kind in [NoiseKind::Gaussian, NoiseKind::Uniform] {
+    for kind in [NOISE_GAUSSIAN, NOISE_UNIFORM] {
         let noise = Noise { kind, actuator: 0.08, sonar: 0.10, light: 0.0, compass: 2.865 };
         // The bell has unit deviation and ends at sqrt(12) of them; flat noise has its amount as half-width.
         let (unit, end) = match kind {
-            NoiseKind::Gaussian => (1.0, 12.0_f64.sqrt() + 1.0e-3),
-            NoiseKind::Uniform => (1.0 / 3.0_f64.sqrt(), 1.0 + 1.0e-4),
+            NOISE_GAUSSIAN => (1.0, 12.0_f64.sqrt() + 1.0e-3),
+            _ => (1.0 / 3.0_f64.sqrt(), 1.0 + 1.0e-4),
         };
         let forward = crowd(FORWARD, &noise, count);
         let slips: Vec<f64> = forward.iter().map(|r| (f64::from(r.x) - 60.0) / 12.0 - 1.0).collect();
@@ -693,7 +694,7 @@ fn noise_has_the_stated_mean_deviation_and_bounds() {
             check_moments("turn", &turned.iter().map(slip).collect::<Vec<_>>(), 0.08 * unit, 0.08 * end);
         }
         let still = crowd(255, &noise, count);
-        let senses: Vec<Senses> = still.iter().map(Senses::of).collect();
+        let senses: Vec<Observation> = still.iter().map(Observation::of).collect();
         let compass: Vec<f64> = senses.iter().map(|s| (f64::from(s.compass) + 180.0) % 360.0 - 180.0).collect();
         check_moments("compass", &compass, 2.865 * unit, 2.865 * end);
         let mut sides = Vec::new();
@@ -715,17 +716,17 @@ fn noise_has_the_stated_mean_deviation_and_bounds() {
     }
     let quiet = crowd(FORWARD, &SILENT, 100);
     assert!(quiet.iter().all(|r| (r.x, r.y, r.heading) == (72.0, 60.0, 0.0)));
-    assert!(quiet.iter().all(|r| Senses::of(r).compass == 0.0 && Senses::of(r).sonar[0] == 48));
+    assert!(quiet.iter().all(|r| Observation::of(r).compass == 0.0 && Observation::of(r).sonar[0] == 48));
 }
 
 /// The CPU moves robots side by side: in any number, with and without an action, and with anything in what a step writes.
 #[test]
 fn a_robot_among_others_is_the_robot_alone() {
     let place = &offices()[0];
-    let noise = Noise { kind: NoiseKind::Gaussian, actuator: 0.08, sonar: 0.10, light: 0.10, compass: 2.865 };
+    let noise = Noise { kind: NOISE_GAUSSIAN, actuator: 0.08, sonar: 0.10, light: 0.10, compass: 2.865 };
     let mut next = stream(31);
     let mut robot = |number: u32| {
-        let kind = if number % 5 == 1 { NoiseKind::Uniform } else { NoiseKind::Gaussian };
+        let kind = if number % 5 == 1 { NOISE_UNIFORM } else { NOISE_GAUSSIAN };
         let mut robot = robot_at(place.pose(&mut next, 0.0), &Noise { kind, ..noise }, 7, number);
         robot.action = if number % 7 == 6 { NO_ACTION } else { number % 6 };
         robot.record = [UNWRITTEN; BASE_WORDS];

@@ -29,9 +29,9 @@ const TREE: [&str; 8] = [
     "--set",
     "sweep.skill.top.applicable.dock=[-0.1, 0.2]",
     "--set",
-    "sweep.skill.pass.learning.rate=[0.1, 0.2]",
+    "sweep.skill.pass.learning.learning_rate=[0.1, 0.2]",
     "--set",
-    "teacher.episodes=2",
+    "teacher.eval_episodes=2",
 ];
 
 /// A run of `tests/support/tree.toml` on the CPU.

@@ -3,17 +3,18 @@
 
 use skilltree::backend::Backend;
 use skilltree::backend::cpu::CpuBackend;
-use skilltree::config::plan::{Action, Child, Noise, NoiseKind, Plan, Robot as Habits, Skill};
+use skilltree::config::plan::{Action, Child, Noise, Plan, SkillPlan};
 use skilltree::config::{Overrides, load};
 use skilltree::env::events::passed_door;
 use skilltree::env::motion::{BESIDE_LEFT, BESIDE_RIGHT, COLLISION, DOCKED, FORWARD, PASSED_DOOR, move_body};
 use skilltree::env::workgroup::CohortData;
+use skilltree::layout::choices::{NOISE_GAUSSIAN, NOISE_UNIFORM};
 use skilltree::layout::{BASE_WORDS, LESSON_HEADER, Robot};
 use skilltree::learn::lesson::ENDED;
 use skilltree::teacher::demonstrations::Demonstration;
 use skilltree::teacher::value_iteration::{Planner, Terms};
-use skilltree::train::batch_group::{Group, groups};
-use skilltree::train::observation::{SILENT, Senses, floor_only, robot_at};
+use skilltree::train::batch_group::{BatchGroup, groups};
+use skilltree::train::observation::{Observation, SILENT, floor_only, robot_at};
 use skilltree::world::{Pose, World, parse};
 use std::collections::VecDeque;
 use std::fmt::Write;
@@ -58,18 +59,17 @@ fn on_line(x: f64, heading: f64, quarters: u32) -> Pose {
     Pose { x: x as f32, y: y as f32, heading: heading as f32 }
 }
 
-fn docking() -> (Plan, Skill) {
+fn docking() -> (Plan, SkillPlan) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/docking.toml");
     let plan = load(&path, &Overrides::default()).unwrap_or_else(|error| panic!("{error}"));
     let skill = plan.arms[0].skills[0].clone();
-    assert_eq!((skill.reward, skill.ends), ([100.0, -10.0, 0.0, 0.0, 0.0], DOCKED));
+    assert_eq!((skill.params.reward, skill.goal), ([100.0, -10.0, 0.0, 0.0, 0.0], DOCKED));
     (plan, skill)
 }
 
 /// What a planner plans with.
 fn terms(noise: Noise, backward_cost: f32, pitch: f32) -> Terms {
-    let robot = Habits { light_trace: 0.9, door_trace: 0.9, range_mean: 0.9, beside_near: 15.0, beside_far: 30.0 };
-    Terms { noise, robot, discount: DISCOUNT, backward_cost, collision_cost: 0.0, pitch }
+    Terms { noise, beside: (15, 30), discount: DISCOUNT, backward_cost, collision_cost: 0.0, pitch }
 }
 
 /// Place on the line in moves, and heading in steps of 15 degrees.
@@ -117,7 +117,7 @@ fn distances(
 }
 
 /// The actions that a skill chooses among.
-fn actions(skill: &Skill) -> Vec<Action> {
+fn actions(skill: &SkillPlan) -> Vec<Action> {
     let action = |child: &Child| match child {
         Child::Action(action) => *action,
         Child::Skill(_) => panic!("a skill among the children"),
@@ -190,8 +190,8 @@ fn docking_values_are_those_of_the_shortest_paths() {
 #[test]
 fn door_values_are_those_of_the_shortest_paths() {
     let (_, mut skill) = docking();
-    skill.reward = [0.0, -10.0, 100.0, 0.0, 0.0];
-    skill.ends = PASSED_DOOR;
+    skill.params.reward = [0.0, -10.0, 100.0, 0.0, 0.0];
+    skill.goal = PASSED_DOOR;
     // Fewer children, in another order, for good measure.
     let children = [Action::Backward, Action::TurnLeft60, Action::TurnLeft15, Action::Forward];
     skill.children = children.map(Child::Action).to_vec();
@@ -213,8 +213,8 @@ fn values_under_noise_are_those_of_the_recursion() {
     let (_, mut skill) = docking();
     skill.children = vec![Child::Action(Action::Forward)];
     for (kind, actuator, weights) in [
-        (NoiseKind::Gaussian, 0.5 / 3.0_f64.sqrt(), [1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0]),
-        (NoiseKind::Uniform, 0.5 / 0.6_f64.sqrt(), [5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0]),
+        (NOISE_GAUSSIAN, 0.5 / 3.0_f64.sqrt(), [1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0]),
+        (NOISE_UNIFORM, 0.5 / 0.6_f64.sqrt(), [5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0]),
     ] {
         // Contact at 27 in: between the grid points of 6 in.
         let world = corridor(15.0, 0);
@@ -243,7 +243,7 @@ fn office_config(skill: &str, extra: &str) -> Plan {
     let office = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/worlds/office.toml");
     let text = format!(
         "title = \"teacher\"\nworld = {office:?}\nseeds = \"0\"\n{extra}\n[evaluate]\nat = []\nepisodes = 1\n\
-         [teacher]\nbank = 100\nepisodes = 1000\n{skill}\n[arm.only]\n"
+         [teacher]\nlessons = 100\neval_episodes = 1000\n{skill}\n[arm.only]\n"
     );
     let folder = tempfile::tempdir().expect("a folder for the config");
     let path = folder.path().join("teacher.toml");
@@ -257,8 +257,8 @@ const DOCK: &str = r#"
     children = ["turn+15", "turn-15", "turn+60", "turn-60", "move+12", "move-12"]
     reward = { docked = 100, collision = -10 }
     starts = { light-area = 0.8, anywhere = 0.2 }
-    tests = "light-area"
-    ends = ["docked"]
+    eval_starts = "light-area"
+    goal = ["docked"]
     max_steps = 30
     lessons = 10
     trials = 10
@@ -270,25 +270,25 @@ const DOOR: &str = r#"
     children = ["turn+15", "turn-15", "turn+60", "turn-60", "move+12", "move-12"]
     reward = { passed-door = 100, collision = -10 }
     starts = { near-doors = 1.0 }
-    tests = "near-doors"
-    ends = ["passed-door"]
+    eval_starts = "near-doors"
+    goal = ["passed-door"]
     max_steps = 25
     lessons = 10
     trials = 10
 "#;
 
-fn only(plan: &Plan) -> Group {
+fn only(plan: &Plan) -> BatchGroup {
     let mut groups = groups(plan).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(groups.len(), 1);
     groups.remove(0)
 }
 
 /// The planner's own tests of the only skill.
-fn bounds(group: &Group) -> &[Demonstration] {
+fn bounds(group: &BatchGroup) -> &[Demonstration] {
     group.bounds[0].as_deref().expect("the first group has the tests")
 }
 
-fn success(group: &Group) -> f64 {
+fn success(group: &BatchGroup) -> f64 {
     let tests = bounds(group);
     assert_eq!(tests.len(), 1000);
     tests.iter().filter(|test| test.achieved()).count() as f64 / 1000.0
@@ -316,7 +316,7 @@ fn check_lesson(lesson: &[u32], ends: u32, pay: [f32; 3]) {
     assert!(lesson[LESSON_HEADER + (steps + 1) * BASE_WORDS..].iter().all(|word| *word == 0));
 }
 
-fn check_bank(group: &Group, ends: u32, pay: [f32; 3]) {
+fn check_bank(group: &BatchGroup, ends: u32, pay: [f32; 3]) {
     let skill = &group.shared.skills[0];
     assert_eq!((skill.bank_offset, skill.bank_lessons), (0, 100));
     let lessons: Vec<&[u32]> = group.shared.bank.chunks(skill.lesson_stride as usize).collect();
@@ -350,7 +350,7 @@ fn the_planner_passes_doors_in_the_office_too() {
 }
 
 /// Number of the room that holds a pose.
-fn plan_room(group: &Group, pose: Pose) -> u32 {
+fn plan_room(group: &BatchGroup, pose: Pose) -> u32 {
     let plan = &group.shared.floor.plan;
     let inside = |area: &&skilltree::layout::Area| {
         area.x0 <= pose.x && pose.x < area.x1 && area.y0 <= pose.y && pose.y < area.y1
@@ -360,7 +360,7 @@ fn plan_room(group: &Group, pose: Pose) -> u32 {
 }
 
 /// Events that the readings after an action tell of: the nearest one 30 to 150 degrees to a side is 15 to 30 inches.
-fn following_wall(senses: &Senses, action: u32, events: u32) -> u32 {
+fn following_wall(senses: &Observation, action: u32, events: u32) -> u32 {
     let near = |rays: std::ops::RangeInclusive<usize>| {
         let nearest = senses.sonar[rays].iter().min().copied().unwrap_or(0);
         action == FORWARD && events & (COLLISION | DOCKED) == 0 && (15..=30).contains(&nearest)
@@ -381,7 +381,7 @@ fn lessons_without_noise_can_be_driven_again() {
             let sense = |step: usize| {
                 let mut record = [0; BASE_WORDS];
                 record.copy_from_slice(&test.lesson[LESSON_HEADER + step * BASE_WORDS..][..BASE_WORDS]);
-                Senses::of(&Robot { record, ..bytemuck::Zeroable::zeroed() })
+                Observation::of(&Robot { record, ..bytemuck::Zeroable::zeroed() })
             };
             let mut pose = test.start;
             let room = |pose: Pose| plan_room(&group, pose);
@@ -406,7 +406,7 @@ fn lessons_without_noise_can_be_driven_again() {
         assert!(hits < 100, "{hits} collisions in 200 lessons");
         CpuBackend::new(2, None).expect("threads").step(&group.shared, &mut robots, 1).expect("the CPU steps");
         for (then, robot) in sensed.iter().zip(&robots) {
-            let now = Senses::of(robot);
+            let now = Observation::of(robot);
             assert_eq!((then.sonar, then.light, then.compass), (now.sonar, now.light, robot.heading));
         }
     }

@@ -3,7 +3,7 @@
 use glam::{DVec2, Vec2};
 use skilltree::config::{ConfigError, Place};
 use skilltree::world::tables::{LIST_CELL, Tables};
-use skilltree::world::{Segment, World, load, parse};
+use skilltree::world::{WallSegment, World, load, parse};
 use std::path::{Path, PathBuf};
 
 const OFFICES: [&str; 3] = ["office", "office-easy", "office-hard"];
@@ -22,7 +22,7 @@ fn stream(mut state: u64) -> impl FnMut() -> f64 {
 }
 
 /// Distance to a segment by walking along it: too large by at most half a stride, and far away by much less.
-fn walked_distance(at: DVec2, segment: &Segment, stride: f64) -> f64 {
+fn walked_distance(at: DVec2, segment: &WallSegment, stride: f64) -> f64 {
     let (a, b) = (segment.a.as_dvec2(), segment.b.as_dvec2());
     let steps = (a.distance(b) / stride).ceil().max(1.0) as u32;
     (0..=steps).map(|i| at.distance(a.lerp(b, f64::from(i) / f64::from(steps)))).fold(f64::INFINITY, f64::min)
@@ -71,7 +71,7 @@ fn clearance_matches_walking_along_every_side() {
         let mut outline = Vec::new();
         let mut add = |low: Vec2, high: Vec2| {
             let c = [low, Vec2::new(high.x, low.y), high, Vec2::new(low.x, high.y)];
-            outline.extend((0..4).map(|i| Segment { a: c[i], b: c[(i + 1) % 4], charger: false }));
+            outline.extend((0..4).map(|i| WallSegment { a: c[i], b: c[(i + 1) % 4], charger: false }));
         };
         add(Vec2::ZERO, world.size);
         world.boxes.iter().for_each(|b| add(b.min, b.max));
@@ -139,7 +139,7 @@ fn the_charger_hides_nothing_and_walls_do() {
 }
 
 /// Distance at which a ray meets a segment, by Cramer's rule.
-fn met(from: DVec2, way: DVec2, segment: &Segment) -> Option<f64> {
+fn met(from: DVec2, way: DVec2, segment: &WallSegment) -> Option<f64> {
     let (a, b) = (segment.a.as_dvec2(), segment.b.as_dvec2());
     let along = b - a;
     let determinant = along.perp_dot(way);

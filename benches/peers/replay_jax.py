@@ -58,7 +58,7 @@ def learn(hyper, learner, step):
 
     future = (1 - hyper["lambda"]) * learner.best + hyper["lambda"] * learner.returned
     goal = step.reward + hyper["gamma"] * jnp.where(step.last, 0, future)
-    goal = jnp.clip(goal, -hyper["target_limit"], hyper["target_limit"])
+    goal = jnp.clip(goal, -hyper["target_clip"], hyper["target_clip"])
 
     value, active = values[child], hidden[child]
     error = (goal - value) * (1 - value * value)

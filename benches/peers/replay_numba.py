@@ -90,7 +90,7 @@ def prepare(work):
     output[:, 0, :, :-1] = first["output.weight"]
     output[:, 0, :, -1] = first["output.bias"]
     given = np.concatenate([work.input, np.ones((*work.child.shape, 1), f32)], axis=2)
-    hyper = tuple(work.hyper[name] for name in ("gamma", "lambda", "rate", "beta1", "beta2", "epsilon2", "target_limit"))
+    hyper = tuple(work.hyper[name] for name in ("gamma", "lambda", "rate", "beta1", "beta2", "epsilon2", "target_clip"))
 
     def run(passes):
         nets = hidden.reshape(learners, 3, inputs + 1, -1).copy(), output.copy(), np.ones((learners, children, 2), f32)

@@ -33,7 +33,7 @@ def learn(hyper, nets, best, returned, step):
     values = torch.tanh((active * output[..., :units]).sum(2) + output[..., units])
 
     future = (1 - hyper["lambda"]) * best + hyper["lambda"] * returned
-    goal = torch.clamp(reward + hyper["gamma"] * going * future, -hyper["target_limit"], hyper["target_limit"])
+    goal = torch.clamp(reward + hyper["gamma"] * going * future, -hyper["target_clip"], hyper["target_clip"])
 
     value = values.view(-1).index_select(0, own)
     active = active.reshape(-1, units).index_select(0, own)

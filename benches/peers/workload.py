@@ -108,7 +108,7 @@ def drill(folder):
     index = np.array([stream + [(0, 0)] * (longest - len(stream)) for stream in streams])
     lesson, step = index[..., 0], index[..., 1]
     names = ("hidden.weight", "hidden.bias", "output.weight", "output.bias")
-    hyper = ("gamma", "lambda", "rate", "beta1", "beta2", "epsilon2", "target_limit")
+    hyper = ("gamma", "lambda", "rate", "beta1", "beta2", "epsilon2", "target_clip")
     return Drill(
         input=tensor["lesson.input"][lesson, step],
         child=tensor["lesson.child"][lesson, step],

@@ -3,9 +3,6 @@
 // Lanes are segments. Contact with a segment is contact with its line between the ends, or with one of
 // its two end points; both are quadratic-free or a single square root.
 
-const RADIUS: f32 = 12.0f;
-const INVERSE_RADIUS: f32 = 0.083333336f;
-const BUMPER_GAP: f32 = 0.4f;
 const FAR: f32 = 1.0e6f;
 const STILL: f32 = 1.0e-7f;
 

@@ -15,16 +15,16 @@ fn remember(skill: u32) {
     let across = (range_toward(0u) + range_toward(2u)) * INVERSE_LIMIT - 1.0f;
     let along = (range_toward(1u) + range_toward(3u)) * INVERSE_LIMIT - 1.0f;
     // The first reading stands for the past that there is not.
-    let past = select(params[s].range_mean, 0.0f, agent.step == 0u);
+    let past = select(params[s].range_decay, 0.0f, agent.step == 0u);
     agent.east_west = flush(past * agent.east_west + (1.0f - past) * across);
     agent.north_south = flush(past * agent.north_south + (1.0f - past) * along);
     let lit = lit_bearings() != 0u;
-    agent.light = select(flush(agent.light * params[s].light_trace), 1.0f, lit);
+    agent.light = select(flush(agent.light * params[s].light_decay), 1.0f, lit);
     let passed = (agent.events & PASSED_DOOR) != 0u;
     let turn = sin_cos(compass_degrees());
-    agent.door = select(flush(agent.door * params[s].door_trace), 1.0f, passed);
-    agent.door_cosine = select(flush(agent.door_cosine * params[s].door_trace), turn.y, passed);
-    agent.door_sine = select(flush(agent.door_sine * params[s].door_trace), turn.x, passed);
+    agent.door = select(flush(agent.door * params[s].door_decay), 1.0f, passed);
+    agent.door_cosine = select(flush(agent.door_cosine * params[s].door_decay), turn.y, passed);
+    agent.door_sine = select(flush(agent.door_sine * params[s].door_decay), turn.x, passed);
 }
 
 fn recall(lane: u32) {

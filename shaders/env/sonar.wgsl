@@ -8,7 +8,6 @@ const READINGS_PER_DEGREE: f32 = 0.06666667f;
 const SONAR_LIMIT: f32 = 127.0f;
 const INVERSE_LIMIT: f32 = 0.007874016f;
 const SLIVER: f32 = 1.0e-4f;
-const CELLS_PER_INCH: f32 = 0.083333336f;
 const LINES: u32 = RAYS / 2u;
 
 // The segments of which rays are being cast at: their ends, and the closeness that they have straight ahead.

@@ -40,7 +40,7 @@ fn teach(lane: u32) {
     let s = params_base + state.skill;
     let begun = state.replay;
     let finished = state.replay_left == 0u && state.replay_open == 0u;
-    if finished && begun >= params[s].taught_passes * params[s].lessons {
+    if finished && begun >= params[s].pretrain_epochs * params[s].lessons {
         conclude(lane);
     } else {
         if finished {
@@ -85,7 +85,7 @@ fn act(lane: u32) {
     let root = state.skill;
     let s = params_base + root;
     let words = skills[root].record_words;
-    let slot = state.remembered % params[s].memory;
+    let slot = state.remembered % params[s].replay_capacity;
     let lesson = lessons_base + skills[root].memory_offset + slot * skills[root].lesson_stride;
     let step = agent.step;
     draw_step(lane, learner_stream(state.trial, step, PURPOSE_STEP));

@@ -23,17 +23,17 @@ fn taught_lesson(number: u32) -> u32 {
 }
 
 // Word of the memory at which a remembered lesson stands, its age drawn from an exponential
-// distribution of mean `mean_age`, cut off at the oldest.
+// distribution of mean `replay_mean_age`, cut off at the oldest.
 fn recent_lesson(word: u32) -> u32 {
     let skill = state.skill;
     let s = params_base + skill;
-    let kept = select(params[s].memory, state.remembered, state.remembered < params[s].memory);
+    let kept = select(params[s].replay_capacity, state.remembered, state.remembered < params[s].replay_capacity);
     // The host sends the negative inverse of the mean age: kernels do not divide.
-    let whole = 1.0f - exponential(params[s].age_decay * f32(kept));
-    let depth = -ln(1.0f - unit(word) * whole) * params[s].mean_age;
+    let whole = 1.0f - exponential(params[s].replay_age_decay * f32(kept));
+    let depth = -ln(1.0f - unit(word) * whole) * params[s].replay_mean_age;
     let drawn = u32(depth);
     let age = select(kept - 1u, drawn, drawn < kept);
-    let slot = (state.remembered - 1u - age) % params[s].memory;
+    let slot = (state.remembered - 1u - age) % params[s].replay_capacity;
     return skills[skill].memory_offset + slot * skills[skill].lesson_stride;
 }
 
@@ -87,7 +87,7 @@ fn clip(target_value: f32, limit: f32) -> f32 {
 
 fn learn_between_decisions(step: u32) -> bool {
     let word = draw(learner_stream(state.trial, state.replay, PURPOSE_INNER), step).x;
-    return unit(word) < params[params_base + state.skill].inner_share;
+    return unit(word) < params[params_base + state.skill].intra_skill_share;
 }
 
 // What the Q-value of the step at word `at` of the lesson in replay should be, given what follows it.
@@ -95,7 +95,7 @@ fn td_target(at: u32) -> f32 {
     let s = params_base + state.skill;
     let reward = bitcast<f32>(lesson_word(at + STEP_REWARD)) * params[s].value_scale;
     let future = (1.0f - params[s].lambda) * state.next_best + params[s].lambda * state.next_return;
-    return clip(reward + params[s].gamma * future, params[s].target_limit);
+    return clip(reward + params[s].gamma * future, params[s].target_clip);
 }
 
 fn replay_step(lane: u32) {
@@ -126,11 +126,11 @@ fn replay_step(lane: u32) {
             state.next_return = found.best;
         } else {
             let child = select(done, skills[skill].mirror_child[done], mirrored);
-            let taught = params[s].taught_always == 1u && state.replay_taught == 1u;
+            let taught = params[s].taught_as_policy == 1u && state.replay_taught == 1u;
             let policy = taught || weights[child] > params[s].policy_threshold * found.total;
             let stretched = found.best + params[s].advantage_scale * (target_value - found.best);
             let plain = params[s].advantage_scale == 1.0f;
-            let aim = select(clip(stretched, params[s].target_limit), target_value, plain);
+            let aim = select(clip(stretched, params[s].target_clip), target_value, plain);
             let delta = aim - q[child];
             // Of all children: one that is never chosen again would not be found out otherwise.
             var sound = is_number(delta);

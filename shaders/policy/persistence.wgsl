@@ -1,9 +1,9 @@
 // Which children may be chosen now: the Persistence Rule (paper, section VI.B).
 
-// What a skill may choose at one step.
+// What a skill may choose at one step. `offered` is what a free choice is made among; where the running child may not be
+// left, that child as well.
 struct Choices {
     applicable: u32,
-    // What a free choice is made among; where the running child may not be left, that child as well.
     offered: u32,
     allowed: u32,
     decision: u32,
@@ -43,7 +43,7 @@ fn action_mask(n: u32, persist: bool) -> Choices {
     let achieved = (agent.events & goal) != 0u;
     let fresh = (applicable & ~before & ~own) != 0u;
     let lost = params[s].interrupt == 1u && (applicable & own) == 0u;
-    let late = params[s].decision_steps > 0u && run_steps(agent.run[n]) >= params[s].decision_steps;
+    let late = params[s].child_timeout > 0u && run_steps(agent.run[n]) >= params[s].child_timeout;
     let free = !persist || !skill || achieved || fresh || lost || late;
     // What runs on is an alternative, even where it is no longer applicable: the step is learned with it.
     let offered = select(choices | own, choices, free);

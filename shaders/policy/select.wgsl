@@ -56,12 +56,12 @@ fn sample(found: Boltzmann, word: u32) -> u32 {
 }
 
 fn choose(lane: u32, skill: u32, allowed: u32, inverse_temperature: f32, greedy: bool, word: u32) -> u32 {
-    let choice = params[params_base + skill].choice;
-    let even = choice != CHOICE_LEARNED;
+    let choice = params[params_base + skill].policy;
+    let even = choice != POLICY_LEARNED;
     let found = boltzmann(lane, skills[skill].children, allowed, select(inverse_temperature, 0.0f, even));
     let drawn = sample(found, word);
     let first = countTrailingZeros(allowed);
     let learned = select(drawn, found.greedy, greedy);
-    let other = select(first, drawn, choice == CHOICE_RANDOM);
+    let other = select(first, drawn, choice == POLICY_RANDOM);
     return select(learned, other, even);
 }

@@ -38,6 +38,6 @@ fn gradient(lane: u32, skill: u32, number: u32, output: u32, row: u32, errors: N
 // Learning rate of a trial: it falls linearly over the first trials.
 fn learning_rate(skill: u32, trial: u32) -> f32 {
     let s = params_base + skill;
-    let risen = select(params[s].rate_trials, trial, trial < params[s].rate_trials);
-    return params[s].rate * (1.0f - params[s].rate_fall * f32(risen));
+    let risen = select(params[s].learning_rate_trials, trial, trial < params[s].learning_rate_trials);
+    return params[s].learning_rate * (1.0f - params[s].learning_rate_fall * f32(risen));
 }

@@ -70,9 +70,12 @@ pub struct Test {
     pub episodes: u32,
 }
 
+/// What outputs hold before a kernel writes them: a NaN that no arithmetic makes.
+pub const UNWRITTEN: u32 = 0xffff_ffff;
+
 /// Test trials that have not begun. A field that the kernel leaves unset shows as a NaN.
 fn fresh(count: usize) -> Vec<Episode> {
-    let unset: Episode = bytemuck::cast([parity::UNWRITTEN; size_of::<Episode>() / 4]);
+    let unset: Episode = bytemuck::cast([UNWRITTEN; size_of::<Episode>() / 4]);
     vec![Episode { state: EPISODE_FRESH, ..unset }; count]
 }
 
@@ -163,7 +166,7 @@ pub enum BackendError {
     /// Not even one learner fits.
     #[error(
         "one learner takes {:.1} MB, and there is room for {:.1} MB\nhint: end other programs, or make learners smaller: \
-         fewer lessons in `learning.memory`, less `max_steps`, fewer skills",
+         fewer lessons in `learning.replay_capacity`, less `max_steps`, fewer skills",
         *bytes as f64 / 1e6,
         *room as f64 / 1e6
     )]

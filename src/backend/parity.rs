@@ -5,13 +5,10 @@
 //! within a learner that of the first field: the state's in the order of their declaration, then nets,
 //! lessons and rows, word by word.
 
-use super::Cohort;
+use super::{Cohort, UNWRITTEN};
 use crate::layout::{Episode, LANES, LESSON_HEADER_WORDS, PHASE_FAILED, Robot, SkillShape, TrialRecord, layout_of};
 use crate::qnet::optimiser::adam::BETA2_POWER;
 use std::fmt;
-
-/// What outputs hold before a kernel writes them: a NaN that no arithmetic makes.
-pub const UNWRITTEN: u32 = 0xffff_ffff;
 
 /// What a net's three slabs hold: the weights, and what the optimiser keeps of each.
 const SLABS: [&str; 3] = ["", "first moment of the ", "second moment of the "];

@@ -7,9 +7,10 @@ use super::robot_walk::RobotWalk;
 use super::taught_replay::TaughtReplay;
 use super::timing::{Elapsed, timed};
 use crate::backend::{Cohort, Test};
-use crate::config::plan::{Optimiser, Plan};
+use crate::config::plan::Plan;
+use crate::layout::choices::{OPTIMISER_ADAM, OPTIMISER_SGD};
 use crate::train::batch::train;
-use crate::train::batch_group::{Group, LearnerId, groups};
+use crate::train::batch_group::{BatchGroup, LearnerId, groups};
 
 /// A piece of work done once.
 #[derive(Debug)]
@@ -198,7 +199,7 @@ impl Benchmark for Transitions {
 #[derive(Debug)]
 pub struct HierarchyLearners {
     plan: Plan,
-    group: Group,
+    group: BatchGroup,
 }
 
 impl HierarchyLearners {
@@ -284,12 +285,12 @@ impl Benchmark for WholeLearners<'_> {
 
     fn about(&self) -> String {
         let skills = &self.learners.plan.arms[0].skills;
-        let trials: u32 = skills.iter().map(|skill| skill.trials).sum();
-        let learning = &skills[skills.len() - 1].learning;
+        let trials: u32 = skills.iter().map(|skill| skill.params.trials).sum();
+        let learning = &skills[skills.len() - 1].params;
         let rule = match learning.optimiser {
-            Optimiser::Sgd { .. } => "gradient descent",
-            Optimiser::Adam { rows: false, .. } => "Adam",
-            Optimiser::Adam { rows: true, .. } => "Adam with one second moment a row",
+            OPTIMISER_SGD => "gradient descent",
+            OPTIMISER_ADAM => "Adam",
+            _ => "Adam with one second moment a row",
         };
         format!(
             "one learner from its first lesson to its last test: {} skills, {trials} trials, {} hidden units, {rule}",

@@ -1,8 +1,9 @@
 //! The shipped configs that benchmarks are cut from, built in, so that the command works anywhere.
 
-use super::{BenchError, make_folder, write_file};
+use super::BenchError;
 use crate::config::plan::Plan;
-use crate::config::{Overrides, load};
+use crate::config::{MemoryFiles, Overrides, load_from};
+use std::path::Path;
 
 /// The shipped files that benchmarks need.
 const FILES: [(&str, &str); 4] = [
@@ -29,11 +30,5 @@ pub const ONE_POINT: [&str; 2] =
 pub fn embedded_plan(config: &str, set: &[&str], seeds: u32) -> Result<Plan, BenchError> {
     let set = set.iter().map(|text| (*text).to_owned()).collect();
     let overrides = Overrides { set, seeds: Some(format!("0..{seeds}")), ..Overrides::default() };
-    let folder = tempfile::tempdir().map_err(|source| BenchError::File { path: std::env::temp_dir(), source })?;
-    for (name, text) in FILES {
-        let path = folder.path().join(name);
-        make_folder(path.parent().unwrap_or(folder.path()))?;
-        write_file(&path, text.as_bytes())?;
-    }
-    Ok(load(&folder.path().join(config), &overrides)?)
+    Ok(load_from(&MemoryFiles::from_iter(FILES), Path::new(config), &overrides)?)
 }

@@ -19,7 +19,7 @@ pub mod timing;
 use crate::backend::BackendError;
 use crate::config::ConfigError;
 use crate::train::batch_group::SetupError;
-use crate::train::train_loop::Halt;
+use crate::train::callbacks::Interrupted;
 use std::path::{Path, PathBuf};
 
 /// Why a benchmark cannot be run, or its rates would mean nothing.
@@ -66,7 +66,7 @@ pub enum BenchError {
     Backend(#[from] BackendError),
     /// Learners have not come to their end.
     #[error(transparent)]
-    Halt(#[from] Halt),
+    Interrupted(#[from] Interrupted),
 }
 
 /// Compares what two executors left of the same work, 32-bit words each.

@@ -19,14 +19,14 @@ const SEEDS: u32 = 64;
 /// Learners of some milliseconds each: whole ones take seconds, of which making their memory is nothing.
 const SET: [&str; 9] = [
     "arms=[\"taught-adam\"]",
-    "teacher.bank=16",
-    "teacher.episodes=1",
+    "teacher.lessons=16",
+    "teacher.eval_episodes=1",
     "evaluate.at=[0]",
     "evaluate.episodes=2",
     "skill.dock.trials=16",
-    "learning.taught_passes=1",
+    "learning.pretrain_epochs=1",
     "learning.replays=4",
-    "learning.memory=4",
+    "learning.replay_capacity=4",
 ];
 
 /// Cost per learner at several numbers of learners.

@@ -3,6 +3,7 @@
 use crate::backend::BackendError;
 use crate::bench::BenchError;
 use crate::config::ConfigError;
+#[cfg(feature = "report")]
 use crate::report::ReportError;
 use crate::run_folder::RecordError;
 use crate::train::batch_group::SetupError;
@@ -54,6 +55,7 @@ pub enum CliError {
     #[error(transparent)]
     Bench(BenchError),
     /// A report cannot be made.
+    #[cfg(feature = "report")]
     #[error(transparent)]
     Report(#[from] ReportError),
 }
@@ -69,8 +71,9 @@ impl CliError {
             | Self::Parity { .. }
             | Self::Backend(_)
             | Self::Record(_)
-            | Self::Report(_)
             | Self::Bench(_) => 1,
+            #[cfg(feature = "report")]
+            Self::Report(_) => 1,
         }
     }
 }

@@ -5,6 +5,7 @@ mod bench;
 mod console;
 mod devices;
 mod error;
+mod keys;
 mod parity;
 mod preview;
 mod probe;
@@ -47,6 +48,7 @@ enum Command {
     Probe(probe::ProbeArguments),
     Devices(devices::DevicesArguments),
     Bench(bench::BenchArguments),
+    Keys(keys::KeysArguments),
 }
 
 /// Carries out what the user typed.
@@ -60,6 +62,7 @@ pub fn run(cli: Cli) -> Result<(), CliError> {
         Command::Probe(arguments) => probe::probe(&arguments),
         Command::Devices(arguments) => devices::devices(&arguments),
         Command::Bench(arguments) => bench::bench(&arguments),
+        Command::Keys(arguments) => keys::keys(&arguments),
     }
 }
 

@@ -4,10 +4,10 @@ use super::console::tell;
 use super::count;
 use crate::backend::{Backend, BackendError};
 use crate::config::plan::{Design, Plan};
-use crate::train::batch_group::Group;
+use crate::train::batch_group::BatchGroup;
 use crate::train::estimate::{Forecast, forecast, measure, parts_bytes};
 use crate::train::run::Options;
-use crate::train::schedule::stages;
+use crate::train::schedule::waves;
 use std::collections::BTreeSet;
 use std::time::Duration;
 
@@ -17,7 +17,7 @@ const MEASURE: Duration = Duration::from_millis(1500);
 /// Shows how large a run is and how long it may take, and hands back its size.
 pub(super) fn show(
     plan: &Plan,
-    groups: &[Group],
+    groups: &[BatchGroup],
     backend: &mut dyn Backend,
     options: Options,
 ) -> Result<Forecast, BackendError> {
@@ -31,8 +31,8 @@ pub(super) fn show(
         tell(&format!("sweep:    {}{drawn}: {}", count(sweep.points.len(), "point"), axes.join(", ")));
     }
     let size = |bytes| options.cohort.map_or_else(|| backend.cohort_size(bytes), Ok);
-    let stages = stages(plan, groups, size, |_| false)?;
-    let forecast = forecast(plan, groups, &stages);
+    let waves = waves(plan, groups, size, |_| false)?;
+    let forecast = forecast(plan, groups, &waves);
     tell(&format!("learners: {}", learners(plan, &forecast)));
     tell(&format!(
         "memory:   {} for each learner, {} for {} in {}",
@@ -44,10 +44,10 @@ pub(super) fn show(
             cohorts => format!("the largest of {cohorts} cohorts"),
         }
     ));
-    let parts = parts_bytes(groups, &stages);
+    let parts = parts_bytes(groups, &waves);
     tell(&format!("disk:     about {}, and {} until the end", bytes(forecast.disk), bytes(parts)));
     tell(&format!("backend:  {}", backend.describe()));
-    let speed = measure(plan, groups, &stages, &forecast, backend, MEASURE)?;
+    let speed = measure(plan, groups, &waves, &forecast, backend, MEASURE)?;
     tell(&format!("time:     {} by estimate, from a short trial on this machine", about(forecast.time(speed))));
     Ok(forecast)
 }
@@ -64,8 +64,8 @@ fn learners(plan: &Plan, forecast: &Forecast) -> String {
     // An arm without the key of some axis has fewer points.
     let product = if whole { factors.join(" x ") } else { format!("of {}", factors.join(" x ")) };
     let mut text = format!("{} ({product})", forecast.learners);
-    if forecast.stems > 0 && forecast.stems < forecast.learners {
-        text += &format!("; everything below the roots is trained {} times", forecast.stems);
+    if forecast.pretrained > 0 && forecast.pretrained < forecast.learners {
+        text += &format!("; everything below the roots is trained {} times", forecast.pretrained);
     }
     text
 }

@@ -1,4 +1,4 @@
-//! `skilltree probe`: one robot under given actions, and all that it senses.
+//! `skilltree probe`: one robot under given actions, and all that it observed.
 
 use super::console::print;
 use super::{CliError, exit_codes};
@@ -8,7 +8,7 @@ use crate::config::plan::Action;
 use crate::config::{Overrides, load};
 use crate::env::motion::{COLLISION, DOCKED};
 use crate::layout::Robot;
-use crate::train::observation::{SILENT, Senses, floor_only, robot_at};
+use crate::train::observation::{SILENT, SensorValues, floor_only, robot_at};
 use crate::world::{Pose, World};
 use clap::ValueEnum;
 use glam::Vec2;
@@ -101,17 +101,17 @@ pub(super) fn probe(arguments: &ProbeArguments) -> Result<(), CliError> {
 }
 
 fn reading_of(robot: &Robot, world: &World) -> ProbeReading {
-    let senses = Senses::of(robot);
+    let observed = SensorValues::of(robot);
     let room = world.room_of(Vec2::new(robot.x, robot.y)).map(|room| world.rooms[room].name.clone());
     ProbeReading {
         x: robot.x,
         y: robot.y,
         heading: robot.heading,
         room,
-        sonar: senses.sonar,
-        light: senses.light,
-        bumpers: senses.bumpers,
-        compass: senses.compass,
+        sonar: observed.sonar,
+        light: observed.light,
+        bumpers: observed.bumpers,
+        compass: observed.compass,
         blocked: robot.events & (COLLISION | DOCKED) != 0,
         docked: robot.events & DOCKED != 0,
     }

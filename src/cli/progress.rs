@@ -2,8 +2,8 @@
 
 use super::console::tell;
 use super::signals::Signals;
-use crate::run_folder::{Failure, RecordError};
-use crate::train::run::Observer;
+use crate::run_folder::{Divergence, RecordError};
+use crate::train::callbacks::{Callbacks, Signal};
 use indicatif::{HumanCount, HumanDuration, ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::path::Path;
@@ -53,8 +53,8 @@ impl RunProgress {
     }
 }
 
-impl Observer for RunProgress {
-    fn trials(&mut self, finished: u64) {
+impl Callbacks for RunProgress {
+    fn progress(&mut self, finished: u64) -> Signal {
         if let Some(bar) = &self.bar {
             bar.set_position(finished);
             let of = format!("{} of {} trials", HumanCount(finished), HumanCount(self.trials));
@@ -71,6 +71,14 @@ impl Observer for RunProgress {
                 Some(_) => {}
             }
         }
+        if !self.signals.asked() {
+            return Signal::Continue;
+        }
+        if !self.stopping {
+            self.stopping = true;
+            self.say("stopping: saving the learners in training; a second signal ends it at once");
+        }
+        Signal::Stop
     }
 
     fn committed(&mut self, finished: usize) {
@@ -79,8 +87,8 @@ impl Observer for RunProgress {
         }
     }
 
-    fn failed(&mut self, failure: &Failure) {
-        let Failure { arm, point, seed, skill, trial, what, .. } = failure;
+    fn diverged(&mut self, divergence: &Divergence) {
+        let Divergence { arm, point, seed, skill, trial, what, .. } = divergence;
         let point = if *point > 0 { format!(", point {point}") } else { String::new() };
         self.say(&format!(
             "warning: arm `{arm}`{point}, seed {seed}: {what}, in skill `{skill}` after {trial} trials: the learner is \
@@ -90,14 +98,5 @@ impl Observer for RunProgress {
 
     fn set_aside(&mut self, why: &RecordError, now: &Path) {
         self.say(&format!("warning: {why}\nnote: it is now {}", now.display()));
-    }
-
-    fn stop(&mut self) -> bool {
-        let asked = self.signals.asked();
-        if asked && !self.stopping {
-            self.stopping = true;
-            self.say("stopping: saving the learners in training; a second signal ends it at once");
-        }
-        asked
     }
 }

@@ -1,9 +1,9 @@
 //! `skilltree report`: figures, tables and the page of complete runs.
 
+#[cfg(feature = "report")]
 use super::console::print;
 use super::{CliError, exit_codes};
-use crate::report;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Draws the figures and writes the self-contained HTML page of complete runs.
 #[derive(Debug, clap::Args)]
@@ -19,12 +19,34 @@ pub(super) struct ReportArguments {
     folders: Vec<PathBuf>,
 }
 
+#[cfg(feature = "report")]
 pub(super) fn report(arguments: &ReportArguments) -> Result<(), CliError> {
     for folder in &arguments.folders {
-        let written = report::write(folder)?;
-        print(&report::text(folder)?)?;
-        let paths: String = written.iter().map(|path| format!("{}\n", path.display())).collect();
+        let crate::report::WrittenReport { files, summary } = crate::report::write(folder)?;
+        print(&summary)?;
+        let paths: String = files.iter().map(|path| format!("{}\n", path.display())).collect();
         print(&paths)?;
     }
     Ok(())
+}
+
+#[cfg(not(feature = "report"))]
+pub(super) fn report(_: &ReportArguments) -> Result<(), CliError> {
+    Err(CliError::Usage {
+        message: "this build of skilltree makes no reports".to_owned(),
+        hint: "build it with its default features, or with `--features report`".to_owned(),
+    })
+}
+
+/// Makes the report at the end of a run. Returns the page's name, if this build makes reports.
+#[cfg(feature = "report")]
+pub(super) fn conclude(folder: &Path) -> Result<Option<&'static str>, CliError> {
+    print(&crate::report::write(folder)?.summary)?;
+    Ok(Some(crate::report::PAGE))
+}
+
+#[cfg(not(feature = "report"))]
+pub(super) fn conclude(_: &Path) -> Result<Option<&'static str>, CliError> {
+    super::console::tell("no report: this build of skilltree makes none (its feature `report` is off)");
+    Ok(None)
 }

@@ -4,10 +4,9 @@ use super::backend::BackendArguments;
 use super::console::{print, tell};
 use super::progress::RunProgress;
 use super::signals::Signals;
-use super::{CliError, exit_codes, preview};
+use super::{CliError, exit_codes, preview, report};
 use crate::config::Overrides;
 use crate::experiment::Experiment;
-use crate::report;
 use crate::run_folder::file_system::{Disk, FileSystem};
 use crate::run_folder::{State, folder, tables};
 use crate::train::batch_group::groups;
@@ -24,7 +23,7 @@ use std::time::{Duration, Instant};
     "  skilltree run configs/quick.toml\n",
     "  skilltree run configs/docking.toml --seeds 0..256 --out runs/docking-256\n",
     "  skilltree run configs/docking.toml --set 'arms=[\"taught-adam\"]'\n",
-    "  skilltree run configs/docking.toml --set learning.rate=0.01 --out runs/fast\n",
+    "  skilltree run configs/docking.toml --set learning.learning_rate=0.01 --out runs/fast\n",
     "  skilltree run configs/thresholds.toml --dry-run\n",
     "  skilltree run configs/sweep.toml --arm taught-adam --point 3 --seeds 1 --out runs/one\n\n",
     "No choice of backend, threads, cohort, iterations or checkpoints changes a byte of the results. A run can be stopped at ",
@@ -44,7 +43,7 @@ pub(super) struct RunArguments {
     /// Runs this point of the sweep only, counted from 0 as in the tables; may be given several times.
     #[arg(long, value_name = "N")]
     point: Vec<u32>,
-    /// Sets a key of the config, such as `learning.rate=0.01`; may be given several times.
+    /// Sets a key of the config, such as `learning.learning_rate=0.01`; may be given several times.
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
     #[command(flatten)]
@@ -129,14 +128,14 @@ fn is_new(out: &Path) -> bool {
 
 /// Makes the report of a complete run and says where everything is.
 fn conclude(out: &Path) -> Result<(), CliError> {
-    report::write(out)?;
-    print(&report::text(out)?)?;
-    let lines = [
+    let page = report::conclude(out)?;
+    let mut lines = vec![
         ("tables:  ", tables::TRIALS),
         ("         ", tables::EVALUATIONS),
         ("nets:    ", "skills"),
         ("config:  ", folder::CONFIG),
-        ("report:  ", report::PAGE),
     ];
-    print(&lines.map(|(label, name)| format!("{label}{}\n", out.join(name).display())).concat())
+    lines.extend(page.map(|page| ("report:  ", page)));
+    let lines = lines.into_iter().map(|(label, name)| format!("{label}{}\n", out.join(name).display()));
+    print(&lines.collect::<String>())
 }

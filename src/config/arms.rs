@@ -1,35 +1,36 @@
 //! The experimental conditions: the base config with each arm's own table laid over it.
 
-use super::hierarchy::{self, Link};
-use super::learning::Idle;
-use super::plan::{Arm, Skill};
-use super::skill::Reader;
-use super::sweep::Sweep;
-use super::sweep::expand::Base;
+use super::arm::{ArmReader, skills};
+use super::hierarchy;
+use super::plan::ArmPlan;
+use super::skill::SkillReader;
+use super::sweep::SweepSource;
+use super::sweep::expand::{self, Base};
+use super::unused_keys::UnusedKeys;
 use super::worlds::Worlds;
-use super::{children, keys, mirror, robot, set, teacher};
-use crate::toml::document::{Entry, Node};
+use super::{keys, set};
+use crate::toml::document::{KeyValue, Node};
 use crate::toml::error::{ConfigError, list, nearest, suggest};
-use crate::toml::reader::{Item, Table, is_name};
+use crate::toml::reader::{Item, TableReader, is_name};
 use std::collections::BTreeSet;
 
 /// Name of the only arm of a config that has no `[arm.NAME]`.
 const BASE: &str = "base";
 /// What an arm may change.
-const ARM_KEYS: [&str; 7] = [LIKE, "world", "root", "learning", "skill", "robot", "teacher"];
+const ARM_KEYS: [&str; 7] = [EXTENDS, "world", "root", "learning", "skill", "robot", "teacher"];
 /// Key of an arm that names the arm over which it is laid.
-const LIKE: &str = "like";
+const EXTENDS: &str = "extends";
 
-/// An arm's table, and before it those of the arms that it is like.
+/// An arm's table, and before it those of the arms that it extends.
 fn layers<'a>(own: &'a Node, arm: &Item<'a>) -> Result<Vec<&'a Node>, ConfigError> {
     let arms = (Item { name: "arm".to_owned(), node: own }).table()?.all();
     let names: Vec<&str> = arms.iter().map(|(entry, _)| entry.key.as_str()).collect();
     let mut layers = vec![arm.node];
-    while let Some(like) = layers[0].get(LIKE) {
-        let item = Item { name: format!("{}.{LIKE}", arm.name), node: like };
+    while let Some(extended) = layers[0].get(EXTENDS) {
+        let item = Item { name: format!("{}.{EXTENDS}", arm.name), node: extended };
         let at = item.choice("arms", &names)?;
         if layers.len() > names.len() {
-            return Err(item.error("the arms are like one another in a circle", "let one of them stand by itself"));
+            return Err(item.error("the arms extend one another in a circle", "let one of them stand by itself"));
         }
         layers.insert(0, arms[at].1.node);
     }
@@ -42,22 +43,22 @@ pub(super) struct Arms<'a> {
     pub(super) base: &'a Node,
     /// The tables of the arms, if there are any.
     pub(super) own: Option<&'a Node>,
-    /// Trials after which skills are tested that do not name their own.
-    pub(super) tested_at: &'a [u32],
+    /// How each of them is read.
+    pub(super) reader: ArmReader<'a>,
 }
 
 /// The arms of a config.
 #[derive(Debug)]
-pub(super) struct Found {
+pub(super) struct ReadArms {
     /// All arms without the sweep, so that a mistake in one that is not run is found too.
-    base: Vec<Arm>,
+    base: Vec<ArmPlan>,
     /// The chosen arms, each at its points of the sweep.
-    pub(super) run: Vec<Arm>,
+    pub(super) run: Vec<ArmPlan>,
 }
 
-impl Found {
+impl ReadArms {
     /// The arms with and without the sweep.
-    pub(super) fn all(&self) -> impl Iterator<Item = &Arm> + Clone {
+    pub(super) fn all(&self) -> impl Iterator<Item = &ArmPlan> + Clone {
         self.base.iter().chain(&self.run)
     }
 }
@@ -66,13 +67,13 @@ impl Arms<'_> {
     /// Reads all arms, and those that are chosen at each point of the sweep.
     pub(super) fn read(
         &self,
-        root: &Table<'_>,
+        root: &TableReader<'_>,
         chosen: Option<&Item<'_>>,
-        sweep: Option<&Sweep<'_>>,
+        sweep: Option<&SweepSource<'_>>,
         worlds: &mut Worlds<'_>,
-    ) -> Result<Found, ConfigError> {
+    ) -> Result<ReadArms, ConfigError> {
         // Read below, merged with each arm.
-        for key in ARM_KEYS.into_iter().filter(|key| *key != LIKE) {
+        for key in ARM_KEYS.into_iter().filter(|key| *key != EXTENDS) {
             root.optional(key);
         }
         if let Some(named) = root.optional(keys::ROOT.name()) {
@@ -84,18 +85,21 @@ impl Arms<'_> {
             let hint = "add [arm.NAME], or remove [arm] to run the config as it stands";
             return Err(self.own.unwrap_or(self.base).origin.error("there are no arms", hint));
         }
-        let mut idle = Idle::default();
+        let mut unused = UnusedKeys::default();
         let mut base = Vec::new();
         for (name, tree) in &trees {
-            base.push(self.arm((name, 0), tree, worlds, &mut idle)?);
+            base.push(self.reader.read((name, 0), tree, worlds, &mut unused)?);
         }
         // What is in nobody's tree is held against the first arm's world.
         let first = &trees[0].1;
         let skills = skills(first)?;
-        let reader = Reader { ground: Some(worlds.ground(base[0].world)), ..self.reader(first, base[0].teacher.bank) };
+        let reader = SkillReader {
+            ground: Some(worlds.ground(base[0].world)),
+            ..self.reader.reader(first, base[0].teacher.lessons, base[0].skills[0].params)
+        };
         let trained = |name: &str| base.iter().any(|arm| arm.skills.iter().any(|skill| skill.name == name));
         for link in hierarchy::links(&skills)?.iter().filter(|link| !trained(link.name) && link.mirror.is_none()) {
-            reader.skill(link, &mut idle)?;
+            reader.skill(link, &mut unused)?;
         }
         let names: Vec<&str> = base.iter().map(|arm| arm.name.as_str()).collect();
         let wanted = select(&names, chosen)?;
@@ -105,11 +109,11 @@ impl Arms<'_> {
                 let arms = base.iter().zip(&trees).enumerate();
                 let bases =
                     arms.map(|(n, (arm, (_, tree)))| Base { arm, tree: tree.clone(), run: wanted.contains(&n) });
-                self.spread(bases.collect(), sweep, worlds, &mut idle)?
+                expand::at_points(&self.reader, bases.collect(), sweep, worlds, &mut unused)?
             }
         };
-        idle.finish()?;
-        Ok(Found { base, run })
+        unused.finish()?;
+        Ok(ReadArms { base, run })
     }
 
     /// The name and the complete config of each arm.
@@ -123,7 +127,7 @@ impl Arms<'_> {
             for layer in layers(own, &item)? {
                 tree.merge(layer.clone());
             }
-            tree.remove(LIKE);
+            tree.remove(EXTENDS);
             trees.push((entry.key.clone(), tree));
         }
         Ok(trees)
@@ -133,7 +137,7 @@ impl Arms<'_> {
     fn check(&self, item: &Item<'_>) -> Result<(), ConfigError> {
         for (entry, part) in item.table()?.all() {
             if !ARM_KEYS.contains(&entry.key.as_str()) {
-                let common = keys::ALL.iter().any(|key| key.path.split('.').next() == Some(&entry.key));
+                let common = keys::is_group(&entry.key);
                 let message = if common {
                     format!("`{}` is the same for all arms", entry.key)
                 } else {
@@ -157,69 +161,10 @@ impl Arms<'_> {
         }
         Ok(())
     }
-
-    /// Reads skills that are not trained; those that are also need a world and an order.
-    fn reader<'b>(&'b self, tree: &'b Node, bank: u32) -> Reader<'b> {
-        let learning = tree.get("learning");
-        Reader { learning, ground: None, bank, tested_at: self.tested_at, order: &[] }
-    }
-
-    /// Reads an arm at a point from its complete config.
-    pub(super) fn arm(
-        &self,
-        (name, point): (&str, u32),
-        tree: &Node,
-        worlds: &mut Worlds<'_>,
-        idle: &mut Idle,
-    ) -> Result<Arm, ConfigError> {
-        let root = Item::root(tree).table()?;
-        let world = worlds.place(&root.required(keys::WORLD.name(), "\"worlds/office.toml\"")?)?;
-        let teacher = teacher::read(&root.required("teacher", "{}")?)?;
-        let table = skills(tree)?;
-        let links = hierarchy::links(&table)?;
-        let top = hierarchy::root(root.optional(keys::ROOT.name()).as_ref(), &links)?;
-        let order = hierarchy::order(&links, top)?;
-        let reader = Reader { ground: Some(worlds.ground(world)), order: &order, ..self.reader(tree, teacher.bank) };
-        let mut skills: Vec<Skill> = Vec::new();
-        for &number in &order {
-            let skill = trained(&links[number], &reader, &skills, idle)?;
-            children::learnable(&links[number].item, number == top, &skill, &skills)?;
-            skills.push(skill);
-        }
-        let reader = self.reader(tree, teacher.bank);
-        for (_, link) in links.iter().enumerate().filter(|(number, _)| !order.contains(number)) {
-            match link.mirror {
-                None => drop(reader.skill(link, idle)?),
-                Some(_) => drop(reader.unused(link, idle)?),
-            }
-        }
-        let (noise, robot) = robot::read(&root.required("robot", "{}")?)?;
-        Ok(Arm { name: name.to_owned(), point, world, skills, noise, robot, teacher })
-    }
 }
 
-/// Reads a skill of an arm's tree; `earlier` ones are those that stand before it.
-fn trained(link: &Link<'_>, reader: &Reader<'_>, earlier: &[Skill], idle: &mut Idle) -> Result<Skill, ConfigError> {
-    let Some((source, item)) = &link.mirror else { return reader.skill(link, idle) };
-    let own = reader.unused(link, idle)?;
-    let number = reader.place(*source);
-    let image = mirror::image(link.name, (number, &earlier[number]), item)?;
-    Ok(match own {
-        Some(tested_at) => Skill { tested_at, ..image },
-        None => image,
-    })
-}
-
-/// The table of all skills.
-fn skills(tree: &Node) -> Result<Table<'_>, ConfigError> {
-    let hint = "add [skill.dock] with inputs, reward, starts, ends and the number of trials";
-    let none = || tree.origin.file_error("the config has no skill", hint);
-    let table = Item::root(tree).table()?.optional("skill").ok_or_else(none)?.table()?;
-    if table.all().is_empty() { Err(none()) } else { Ok(table) }
-}
-
-/// Refuses names of arms and alterations that could not stand in files and on the command line.
-pub(super) fn small_name(entry: &Entry, what: &str) -> Result<(), ConfigError> {
+/// Refuses names of arms and transfers that could not stand in files and on the command line.
+pub(super) fn small_name(entry: &KeyValue, what: &str) -> Result<(), ConfigError> {
     let name = &entry.key;
     if is_name(name) && !name.contains(|c: char| c == '_' || c.is_ascii_uppercase()) {
         return Ok(());

@@ -1,11 +1,11 @@
 //! What a skill chooses among, and how.
 
 use super::keys;
-use super::plan::{Action, Child, Choice, Persistence, Skill, Threshold};
+use super::plan::{Action, Child, SkillPlan, Threshold};
 use crate::layout::MAX_CHILDREN;
 use crate::toml::document::Value;
 use crate::toml::error::{ConfigError, suggest};
-use crate::toml::reader::{Item, Section, argument};
+use crate::toml::reader::{Item, KeyedTable, argument};
 
 /// Reads the children, with where each is written. A skill is numbered by its place in `skills`.
 pub(super) fn read<'a>(item: &Item<'a>, skills: &[&str]) -> Result<Vec<(Child, Item<'a>)>, ConfigError> {
@@ -50,7 +50,7 @@ pub(super) fn applicable(
 }
 
 /// Refuses thresholds that nothing would teach: they are learned of the root's children, from trials that may fail.
-pub(super) fn learnable(item: &Item<'_>, root: bool, own: &Skill, skills: &[Skill]) -> Result<(), ConfigError> {
+pub(super) fn learnable(item: &Item<'_>, root: bool, own: &SkillPlan, skills: &[SkillPlan]) -> Result<(), ConfigError> {
     for (child, threshold) in own.children.iter().zip(&own.applicable) {
         let (Child::Skill(below), Some(Threshold::Learned(_))) = (child, threshold) else { continue };
         let child = &skills[*below];
@@ -58,11 +58,11 @@ pub(super) fn learnable(item: &Item<'_>, root: bool, own: &Skill, skills: &[Skil
             format!("`{}` is not the root", own.name)
         } else if child.mirror.is_some() {
             format!("`{}` is a mirror image", child.name)
-        } else if child.planned {
-            format!("`{}` is planned", child.name)
-        } else if child.trials == 0 {
+        } else if child.oracle {
+            format!("`{}` is an oracle", child.name)
+        } else if child.params.trials == 0 {
             format!("`{}` has no trials", child.name)
-        } else if child.ends == 0 {
+        } else if child.goal == 0 {
             format!("`{}` has no goal", child.name)
         } else {
             continue;
@@ -93,31 +93,15 @@ fn threshold(item: &Item<'_>) -> Result<Threshold, ConfigError> {
     }
 }
 
-/// Reads how a child is chosen.
-pub(super) fn choice(section: &Section<'_>) -> Result<Choice, ConfigError> {
-    Ok(match section.choice(&keys::SKILL_CHOICE)? {
-        0 => Choice::Learned,
-        1 => Choice::Random,
-        _ => Choice::Ordered,
-    })
-}
-
-/// Reads how a skill keeps to the chosen child.
-pub(super) fn persistence(section: &Section<'_>) -> Result<Persistence, ConfigError> {
+/// Reads whether a skill keeps to the chosen child, in training and in tests.
+pub(super) fn persistence(section: &KeyedTable<'_>) -> Result<(bool, bool), ConfigError> {
     let item = section.required(&keys::SKILL_PERSISTENCE, "true")?;
-    let (training, tests) = match &item.node.value {
-        Value::Flag(flag) => (*flag, *flag),
-        Value::Text(text) if text == "training" => (true, false),
+    match &item.node.value {
+        Value::Flag(flag) => Ok((*flag, *flag)),
+        Value::Text(text) if text == "training" => Ok((true, false)),
         _ => {
             let message = format!("`{}` must be true, false or \"training\"", item.name);
-            return Err(item.error(message, "\"training\" keeps to a child in training trials, but not in tests"));
+            Err(item.error(message, "\"training\" keeps to a child in training trials, but not in tests"))
         }
-    };
-    Ok(Persistence {
-        training,
-        tests,
-        applicability: section.flag(&keys::SKILL_APPLICABILITY)?,
-        interrupt: section.flag(&keys::SKILL_INTERRUPT)?,
-        decision_steps: section.whole(&keys::SKILL_DECISION_STEPS)?,
-    })
+    }
 }

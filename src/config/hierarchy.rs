@@ -6,7 +6,7 @@ use super::plan::{Action, Child};
 use crate::layout::{MAX_DEPTH, MAX_SKILLS};
 use crate::toml::document::Value;
 use crate::toml::error::{ConfigError, suggest};
-use crate::toml::reader::{Item, Section, Table, is_name};
+use crate::toml::reader::{Item, KeyedTable, TableReader, is_name};
 
 /// What a skill is made of. Skills are numbered by their places in the file.
 #[derive(Debug)]
@@ -36,7 +36,7 @@ impl Link<'_> {
 }
 
 /// Reads what each skill of the table `skill` is made of.
-pub(super) fn links<'a>(table: &Table<'a>) -> Result<Vec<Link<'a>>, ConfigError> {
+pub(super) fn links<'a>(table: &TableReader<'a>) -> Result<Vec<Link<'a>>, ConfigError> {
     let all = table.all();
     let names: Vec<&str> = all.iter().map(|(entry, _)| entry.key.as_str()).collect();
     let mut links = Vec::with_capacity(all.len());
@@ -50,7 +50,7 @@ pub(super) fn links<'a>(table: &Table<'a>) -> Result<Vec<Link<'a>>, ConfigError>
             let message = format!("`{name}` cannot be the name of a skill: it is an action");
             return Err(entry.origin.error(message, "choose another name"));
         }
-        let section = Section(item.table()?);
+        let section = KeyedTable(item.table()?);
         let mirror = mirror(section.required(&keys::SKILL_MIRROR, "false")?, &names)?;
         let children = match mirror {
             Some(_) => Vec::new(),

@@ -1,7 +1,7 @@
 //! What a skill's nets see.
 
 use super::keys;
-use super::plan::{Input, Skill};
+use super::plan::{Input, SkillPlan};
 use crate::layout::{MAX_GROUPS, MAX_INPUTS};
 use crate::toml::error::ConfigError;
 use crate::toml::reader::{Item, argument};
@@ -38,7 +38,7 @@ fn input(item: &Item<'_>) -> Result<Input, ConfigError> {
 }
 
 /// Refuses inputs that have nothing to show in this skill, and too many of them for a world of so many rooms.
-pub(super) fn check(item: &Item<'_>, skill: &Skill, rooms: usize) -> Result<(), ConfigError> {
+pub(super) fn check(item: &Item<'_>, skill: &SkillPlan, rooms: usize) -> Result<(), ConfigError> {
     for (input, one) in skill.inputs.iter().zip(item.items()?) {
         let (lacking, hint) = match input {
             Input::Values | Input::Applicable if skill.thresholds() == 0 => {

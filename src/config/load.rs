@@ -4,23 +4,26 @@
 //! (into which `--set arm.NAME.key=value` goes first), and the values at a point of the sweep. Within a skill, `skill.NAME.learning` lies over `learning`, also over an
 //! arm's: what names the skill is more specific.
 
+use super::arm::ArmReader;
 use super::arms::Arms;
-use super::keys::{self, Key};
+use super::keys::{self, KeyRow};
 use super::plan::{Evaluate, Plan};
 use super::worlds::Worlds;
-use super::{seeds, set, sweep, transfer};
-use crate::toml::document::{Node, Origin, SWEEP, Source, Value};
+use super::{renamed, seeds, set, sweep, transfer};
+use crate::layout::params::MAX_TRIALS;
+use crate::toml::document::{Node, SWEEP, SourceSpan, SourceText, Value};
 use crate::toml::error::ConfigError;
 use crate::toml::printer;
-use crate::toml::reader::{Item, Section, Table};
+use crate::toml::reader::{Item, KeyedTable, TableReader};
+use crate::toml::{Files, OsFiles};
 use std::path::Path;
 use std::sync::Arc;
 
 /// What the command line changes in a config.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Overrides {
-    /// `key=value` of each `--set`, in order: `learning.rate=0.01`, `skill.dock.trials=20`,
-    /// `arm.taught-sgd.learning.rate=0.1`. A later one wins. One on a base key wins over the file's base key, but an
+    /// `key=value` of each `--set`, in order: `learning.learning_rate=0.01`, `skill.dock.trials=20`,
+    /// `arm.taught-sgd.learning.learning_rate=0.1`. A later one wins. One on a base key wins over the file's base key, but an
     /// arm's own override of that key, being more specific, still holds in that arm.
     pub set: Vec<String>,
     /// The value of `--seeds`, which wins over the file and over `--set`.
@@ -60,15 +63,27 @@ impl Overrides {
 
 /// A value from the command line.
 fn typed(value: Value, argument: String) -> Node {
-    Node { value, origin: Origin { source: Arc::new(Source::Argument(argument)), span: 0..0 } }
+    Node { value, origin: SourceSpan { source: Arc::new(SourceText::Argument(argument)), span: 0..0 } }
 }
 
 /// Reads a config file, the world files that it names, and the command line's changes.
+///
+/// # Errors
+/// Where a file cannot be read, or something in it or on the command line is wrong: the place, and what would be right.
 pub fn load(path: &Path, overrides: &Overrides) -> Result<Plan, ConfigError> {
-    let mut tree = read(path)?;
+    load_from(&OsFiles, path, overrides)
+}
+
+/// The same from any source of files, such as [`crate::config::MemoryFiles`].
+///
+/// # Errors
+/// As those of [`load`].
+pub fn load_from(files: &dyn Files, path: &Path, overrides: &Overrides) -> Result<Plan, ConfigError> {
+    let mut tree = read(files, path)?;
     overrides.apply(&mut tree)?;
+    renamed::refuse(&tree)?;
     let mut own = tree.remove("arm").map(|entry| entry.node);
-    let mut altered = tree.remove("alter").map(|entry| entry.node);
+    let mut transferred = tree.remove("transfer").map(|entry| entry.node);
     let mut swept = tree.remove(SWEEP).map(|entry| entry.node);
     let mut base = defaults(&tree)?;
     base.merge(tree);
@@ -78,17 +93,18 @@ pub fn load(path: &Path, overrides: &Overrides) -> Result<Plan, ConfigError> {
         Some(item) => item.short_name()?.to_owned(),
         None => path.file_stem().map_or_else(|| "config".to_owned(), |stem| stem.to_string_lossy().into_owned()),
     };
-    let mut worlds = Worlds::new(path);
+    let mut worlds = Worlds::new(files, path);
     worlds.place(&root.required(keys::WORLD.name(), "\"worlds/office.toml\"")?)?;
     let evaluate = evaluate(&root)?;
-    let section = Section(root);
-    let run_seed = section.whole(&keys::SEED)?;
+    let section = KeyedTable(root);
+    let run_seed = section.word(&keys::SEED)?;
     let sweep = sweep::read(swept.as_ref(), &base, run_seed)?;
     let chosen = section.0.optional(keys::ARMS.name());
-    let arms = Arms { base: &base, own: own.as_ref(), tested_at: &evaluate.at };
+    let reader = ArmReader { eval_at: &evaluate.at };
+    let arms = Arms { base: &base, own: own.as_ref(), reader };
     let arms = arms.read(&section.0, chosen.as_ref(), sweep.as_ref(), &mut worlds)?;
-    let alterations = match &altered {
-        Some(altered) => transfer::read(altered, &base, arms.all(), &mut worlds)?,
+    let alterations = match &transferred {
+        Some(transferred) => transfer::read(transferred, &base, arms.all(), &mut worlds)?,
         None => Vec::new(),
     };
     let title = section.required(&keys::TITLE, "\"...\"")?.text()?.to_owned();
@@ -96,24 +112,21 @@ pub fn load(path: &Path, overrides: &Overrides) -> Result<Plan, ConfigError> {
     section.0.finish()?;
 
     let sweep = sweep.map(|sweep| sweep.plan(&mut worlds)).transpose()?;
-    for group in own.iter_mut().chain(&mut altered) {
+    for group in own.iter_mut().chain(&mut transferred) {
         worlds.rename(group)?;
     }
     if let Some(swept) = &mut swept {
         sweep::rename(swept, &mut worlds)?;
     }
-    let source = path.to_owned();
     let worlds = worlds.placed;
-    let resolved = resolve(base, (&name, &worlds[0].file), [(SWEEP, swept), ("arm", own), ("alter", altered)]);
+    let resolved = resolve(base, (&name, &worlds[0].file), [(SWEEP, swept), ("arm", own), ("transfer", transferred)]);
     let arms = arms.run;
-    Ok(Plan { name, source, title, run_seed, seeds, worlds, arms, sweep, alterations, evaluate, resolved })
+    Ok(Plan { name, title, run_seed, seeds, worlds, arms, sweep, alterations, evaluate, resolved })
 }
 
 /// A config's tree, laid over that of the config that it extends.
-fn read(path: &Path) -> Result<Node, ConfigError> {
-    let text = |path: &Path| {
-        std::fs::read_to_string(path).map_err(|error| ConfigError::unreadable(path, "config file", &error))
-    };
+fn read(files: &dyn Files, path: &Path) -> Result<Node, ConfigError> {
+    let text = |path: &Path| files.read(path).map_err(|error| ConfigError::unreadable(path, "config file", &error));
     let mut tree = Node::parse(&text(path)?, path)?;
     let Some(entry) = tree.remove(keys::EXTENDS.name()) else { return Ok(tree) };
     let item = Item { name: keys::EXTENDS.name().to_owned(), node: &entry.node };
@@ -137,10 +150,10 @@ fn read(path: &Path) -> Result<Node, ConfigError> {
 
 /// The tree of all defaults, with one table for each skill of the file, in its order.
 fn defaults(tree: &Node) -> Result<Node, ConfigError> {
-    let source = Arc::new(Source::Default("the whole config"));
-    let mut out = Node::empty(Origin { source, span: 0..0 });
+    let source = Arc::new(SourceText::Default("the whole config"));
+    let mut out = Node::empty(SourceSpan { source, span: 0..0 });
     let skills = set::names(tree, "skill");
-    for key in keys::ALL {
+    for key in keys::all() {
         let Some(text) = key.default else { continue };
         let parts: Vec<&str> = key.path.split('.').collect();
         match parts.as_slice() {
@@ -155,9 +168,9 @@ fn defaults(tree: &Node) -> Result<Node, ConfigError> {
     Ok(out)
 }
 
-fn default(key: &Key, text: &str, path: &[&str]) -> Result<Node, ConfigError> {
-    let source = Arc::new(Source::Default(key.path));
-    let origin = Origin { source: Arc::clone(&source), span: 0..0 };
+fn default(key: &KeyRow, text: &str, path: &[&str]) -> Result<Node, ConfigError> {
+    let source = Arc::new(SourceText::Default(key.path));
+    let origin = SourceSpan { source: Arc::clone(&source), span: 0..0 };
     // A test reads every default; a broken one is still reported and not a panic.
     let broken = || Err(origin.error(format!("`{text}` is not TOML"), "please report this"));
     let mut node = Node::parse_value(text, &source).unwrap_or_else(broken)?;
@@ -169,10 +182,10 @@ fn default(key: &Key, text: &str, path: &[&str]) -> Result<Node, ConfigError> {
     Ok(node)
 }
 
-fn evaluate(root: &Table<'_>) -> Result<Evaluate, ConfigError> {
-    let section = Section(root.required("evaluate", "{}")?.table()?);
-    let at = section.required(&keys::EVALUATE_AT, "[0, 100]")?.ascending(keys::MANY)?;
-    let evaluate = Evaluate { at, episodes: section.whole(&keys::EVALUATE_EPISODES)? };
+fn evaluate(root: &TableReader<'_>) -> Result<Evaluate, ConfigError> {
+    let section = KeyedTable(root.required("evaluate", "{}")?.table()?);
+    let at = section.required(&keys::EVALUATE_AT, "[0, 100]")?.ascending(MAX_TRIALS)?;
+    let evaluate = Evaluate { at, episodes: section.word(&keys::EVALUATE_EPISODES)? };
     section.0.finish()?;
     Ok(evaluate)
 }

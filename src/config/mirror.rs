@@ -1,11 +1,12 @@
 //! Skills that are the mirror image of another one and use its nets.
 
-use super::plan::{Child, Event, Skill};
+use super::plan::{Child, Event, SkillPlan};
+use crate::layout::HyperParams;
 use crate::toml::error::ConfigError;
 use crate::toml::reader::Item;
 
 /// Refuses replays seen in a mirror that would not show the same skill; `item` is where they are asked for.
-pub(super) fn check_replays(skill: &Skill, item: &Item<'_>) -> Result<(), ConfigError> {
+pub(super) fn check_replays(skill: &SkillPlan, item: &Item<'_>) -> Result<(), ConfigError> {
     let problem = if skill.is_high() {
         Some("which chooses among skills".to_owned())
     } else if let Some(input) = skill.inputs.iter().find(|input| !input.is_mirrored()) {
@@ -14,9 +15,9 @@ pub(super) fn check_replays(skill: &Skill, item: &Item<'_>) -> Result<(), Config
         Some(format!("which has no turn the other way than `{}`", turn.name()))
     } else {
         let differs = |seen: &Event| {
-            let ends = |event: Event| skill.ends & event.bit() != 0;
-            skill.reward[*seen as usize] != skill.reward[seen.mirrored() as usize]
-                || ends(*seen) != ends(seen.mirrored())
+            let goal = |event: Event| skill.goal & event.bit() != 0;
+            skill.params.reward[*seen as usize] != skill.params.reward[seen.mirrored() as usize]
+                || goal(*seen) != goal(seen.mirrored())
         };
         let side = Event::ALL.into_iter().find(differs);
         side.map(|seen| format!("which sees more in `{}` than in `{}`", seen.name(), seen.mirrored().name()))
@@ -27,7 +28,11 @@ pub(super) fn check_replays(skill: &Skill, item: &Item<'_>) -> Result<(), Config
 }
 
 /// The mirror image of `source`, which is the arm's skill of that number; `item` is where it is named.
-pub(super) fn image(name: &str, (number, source): (usize, &Skill), item: &Item<'_>) -> Result<Skill, ConfigError> {
+pub(super) fn image(
+    name: &str,
+    (number, source): (usize, &SkillPlan),
+    item: &Item<'_>,
+) -> Result<SkillPlan, ConfigError> {
     if let Some(input) = source.inputs.iter().find(|input| !input.is_mirrored()) {
         let message = format!(
             "`{name}` cannot be the mirror image of `{}`, whose input `{}` has none",
@@ -38,23 +43,21 @@ pub(super) fn image(name: &str, (number, source): (usize, &Skill), item: &Item<'
                     give this skill keys of its own";
         return Err(item.error(message, hint));
     }
-    let mut reward = [0.0; Event::ALL.len()];
-    let mut ends = 0;
+    let mut params = HyperParams { lessons: 0, trials: 0, ..source.params };
+    let mut goal = 0;
     for seen in Event::ALL {
-        reward[seen.mirrored() as usize] = source.reward[seen as usize];
-        if source.ends & seen.bit() != 0 {
-            ends |= seen.mirrored().bit();
+        params.reward[seen.mirrored() as usize] = source.params.reward[seen as usize];
+        if source.goal & seen.bit() != 0 {
+            goal |= seen.mirrored().bit();
         }
     }
-    Ok(Skill {
+    Ok(SkillPlan {
         name: name.to_owned(),
         children: source.children.iter().map(|child| child.mirrored()).collect(),
-        // A planned skill has no nets: its image is planned too.
-        mirror: (!source.planned).then_some(number),
-        reward,
-        ends,
-        lessons: 0,
-        trials: 0,
+        // An oracle has no nets: its image is one too.
+        mirror: (!source.oracle).then_some(number),
+        goal,
+        params,
         ..source.clone()
     })
 }

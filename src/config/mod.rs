@@ -6,15 +6,17 @@
 //! `worlds` the floor plans,
 //! `sweep` the points at which arms are run. [`load()`] puts the layers together.
 
+mod arm;
 mod arms;
 mod children;
 mod hierarchy;
 mod inputs;
 pub mod keys;
-mod learning;
 mod load;
 mod mirror;
 pub mod plan;
+pub mod reference;
+mod renamed;
 mod robot;
 mod seeds;
 mod set;
@@ -22,8 +24,9 @@ mod skill;
 mod sweep;
 mod teacher;
 mod transfer;
+mod unused_keys;
 mod worlds;
 
-pub use crate::toml::{ConfigError, Place};
-pub use load::{Overrides, load};
+pub use crate::toml::{ConfigError, Files, MemoryFiles, OsFiles, Place};
+pub use load::{Overrides, load, load_from};
 pub use seeds::parse_seeds;

@@ -5,7 +5,7 @@ use crate::toml::error::{ConfigError, Place};
 use crate::toml::reader::Item;
 
 /// Most seeds of one run. Each is a learner per arm.
-const MOST: usize = 1 << 20;
+const MAX_SEEDS: usize = 1 << 20;
 const SHAPE: &str = "write ranges such as 0..7 (7 left out), 0..=6, 5 or 1,2,5..9";
 
 /// Reads `0..7`, `0..=6`, `5` or `1,2,5..9`, as given to `--seeds`: ascending, without repeats.
@@ -50,8 +50,8 @@ fn ranges(text: &str) -> Result<Vec<u32>, (String, String)> {
             let hint = "the end is left out, as in 0..7 for 0 to 6, and must come after the start";
             return Err((format!("the range `{}` holds no seed", part.trim()), hint.to_owned()));
         }
-        if last - first > (MOST - seeds.len()) as u64 {
-            return Err((format!("`{text}` holds too many seeds"), format!("at most {MOST} are possible")));
+        if last - first > (MAX_SEEDS - seeds.len()) as u64 {
+            return Err((format!("`{text}` holds too many seeds"), format!("at most {MAX_SEEDS} are possible")));
         }
         // Both ends stem from u32; the loop stops before `last`.
         seeds.extend((first..last).map(|seed| seed as u32));

@@ -2,71 +2,83 @@
 
 use super::hierarchy::Link;
 use super::keys;
-use super::learning::{self, Idle};
-use super::plan::{Child, Event, Learning, Skill};
+use super::plan::{Child, Event, SkillPlan, Threshold};
+use super::unused_keys::UnusedKeys;
 use super::worlds::Ground;
 use super::{children, inputs, mirror};
-use crate::layout::MAX_STARTS;
+use crate::layout::choices::OPTIMISER_SGD;
+use crate::layout::params::{ALWAYS, MAX_TRIALS};
+use crate::layout::{EVENTS, HyperParams, MAX_CHILDREN, MAX_STARTS};
 use crate::toml::document::{Node, Value};
 use crate::toml::error::{ConfigError, suggest};
-use crate::toml::reader::{Item, Section};
+use crate::toml::reader::{Item, KeyedTable};
 use crate::world::World;
 
 /// What the skills of an arm are read with, besides their own tables.
 #[derive(Debug)]
-pub(super) struct Reader<'a> {
+pub(super) struct SkillReader<'a> {
     /// What `skill.NAME.learning` lies over.
     pub(super) learning: Option<&'a Node>,
     /// The arm's floor plan. None for skills that the arm does not train: they may belong in another one, so that
     /// regions, events and inputs are not held against it.
     pub(super) ground: Option<Ground<'a>>,
-    /// Lessons in the teacher's bank.
-    pub(super) bank: u32,
+    /// The numbers that the arm's robots have in common.
+    pub(super) robot: HyperParams,
+    /// Lessons that the teacher demonstrates.
+    pub(super) taught: u32,
     /// Trials after which skills are tested that do not name their own.
-    pub(super) tested_at: &'a [u32],
+    pub(super) eval_at: &'a [u32],
     /// The arm's skills, by their places in the file.
     pub(super) order: &'a [usize],
 }
 
-impl Reader<'_> {
+impl SkillReader<'_> {
     /// Reads a skill that is no mirror image.
-    pub(super) fn skill(&self, link: &Link<'_>, idle: &mut Idle) -> Result<Skill, ConfigError> {
+    pub(super) fn skill(&self, link: &Link<'_>, unused: &mut UnusedKeys) -> Result<SkillPlan, ConfigError> {
         let (ground, world) = (self.ground, self.ground.map(|ground| ground.world));
-        let section = Section(link.item.table()?);
+        let section = KeyedTable(link.item.table()?);
         let asked = section.required(&keys::SKILL_INPUTS, "[\"sonar\", \"light\", \"bumpers\"]")?;
         let inputs = inputs::read(&asked, world)?;
         // These two are in the link already.
         section.0.optional(keys::SKILL_CHILDREN.name());
         section.0.optional(keys::SKILL_MIRROR.name());
         let applicable = children::applicable(&section.required(&keys::SKILL_APPLICABLE, "{}")?, &link.children)?;
-        let reward = reward(&section.required(&keys::SKILL_REWARD, "{ docked = 100, collision = -10 }")?, world)?;
         let starts = starts(&section.required(&keys::SKILL_STARTS, "\"anywhere\"")?, ground)?;
-        let tests = section.required(&keys::SKILL_TESTS, "\"anywhere\"")?;
-        let tests = region(tests.text()?, &|message, hint| tests.error(message, hint), ground)?;
-        let ends = ends(&section.required(&keys::SKILL_ENDS, "[\"docked\"]")?, world)?;
-        let planned = planned(&section, link)?;
-        let (lessons, trials) = (self.lessons(&section, link)?, section.whole(&keys::SKILL_TRIALS)?);
-        let skill = Skill {
+        let tests = section.required(&keys::SKILL_EVAL_STARTS, "\"anywhere\"")?;
+        let eval_starts = region(tests.text()?, &|message, hint| tests.error(message, hint), ground)?;
+        let goal = goal(&section.required(&keys::SKILL_GOAL, "[\"docked\"]")?, world)?;
+        let oracle = oracle(&section, link)?;
+        let mut params = self.learning(&section, &link.item, unused)?;
+        section.fill("skill.*.", HyperParams::rows(), &mut params)?;
+        params.reward = reward(&section.required(&keys::SKILL_REWARD, "{ docked = 100, collision = -10 }")?, world)?;
+        params.threshold = [ALWAYS; MAX_CHILDREN];
+        for (value, own) in params.threshold.iter_mut().zip(&applicable) {
+            // A learned one is always exceeded until it is known.
+            if let Some(Threshold::Fixed(fixed)) = own {
+                *value = *fixed;
+            }
+        }
+        let (training, tests) = children::persistence(&section)?;
+        (params.persist_training, params.persist_tests) = (training.into(), tests.into());
+        self.check_lessons(params.lessons, &section, link)?;
+        if oracle {
+            (params.lessons, params.trials) = (0, 0);
+        }
+        let skill = SkillPlan {
             name: link.name.to_owned(),
             inputs,
             children: link.children.iter().map(|(child, _)| self.child(*child)).collect(),
             applicable,
-            choice: children::choice(&section)?,
-            persistence: children::persistence(&section)?,
             mirror: None,
-            planned,
-            reward,
+            oracle,
             starts,
-            tests,
-            tested_at: self.tested_at(&section)?.unwrap_or_else(|| self.tested_at.to_vec()),
-            ends,
-            max_steps: section.whole(&keys::SKILL_MAX_STEPS)?,
-            lessons: if planned { 0 } else { lessons },
-            trials: if planned { 0 } else { trials },
-            learning: self.learning(&section, &link.item, idle)?,
+            eval_starts,
+            eval_at: self.eval_at(&section)?.unwrap_or_else(|| self.eval_at.to_vec()),
+            goal,
+            params,
         };
         inputs::check(&asked, &skill, world.map_or(0, |world| world.rooms.len()))?;
-        if skill.learning.mirror_replays {
+        if skill.params.mirror_replays == 1 {
             mirror::check_replays(&skill, &self.mirror_replays(&link.item))?;
         }
         section.0.finish()?;
@@ -74,20 +86,20 @@ impl Reader<'_> {
     }
 
     /// Checks the table of a mirror image for misspelt keys. They are what the skill is where an arm says
-    /// `mirror = false`; until then `tested_at` alone is used, and returned if it is there.
-    pub(super) fn unused(&self, link: &Link<'_>, idle: &mut Idle) -> Result<Option<Vec<u32>>, ConfigError> {
-        let section = Section(link.item.table()?);
-        for key in keys::ALL.iter().filter(|key| key.path.starts_with("skill.*.")) {
+    /// `mirror = false`; until then `eval_at` alone is used, and returned if it is there.
+    pub(super) fn unused(&self, link: &Link<'_>, unused: &mut UnusedKeys) -> Result<Option<Vec<u32>>, ConfigError> {
+        let section = KeyedTable(link.item.table()?);
+        for key in keys::all().filter(|key| key.path.starts_with("skill.*.")) {
             section.0.optional(key.name());
         }
-        self.learning(&section, &link.item, idle)?;
-        let tested_at = self.tested_at(&section)?;
+        self.learning(&section, &link.item, unused)?;
+        let eval_at = self.eval_at(&section)?;
         section.0.finish()?;
-        Ok(tested_at)
+        Ok(eval_at)
     }
 
-    fn tested_at(&self, section: &Section<'_>) -> Result<Option<Vec<u32>>, ConfigError> {
-        section.0.optional(keys::SKILL_TESTED_AT.name()).map(|item| item.ascending(keys::MANY)).transpose()
+    fn eval_at(&self, section: &KeyedTable<'_>) -> Result<Option<Vec<u32>>, ConfigError> {
+        section.0.optional(keys::SKILL_EVAL_AT.name()).map(|item| item.ascending(MAX_TRIALS)).transpose()
     }
 
     /// The place of a skill among the arm's own; below a skill that the arm does not train it has none, and stays.
@@ -102,21 +114,26 @@ impl Reader<'_> {
         }
     }
 
-    fn lessons(&self, section: &Section<'_>, link: &Link<'_>) -> Result<u32, ConfigError> {
-        let lessons = section.whole(&keys::SKILL_LESSONS)?;
-        let item = section.required(&keys::SKILL_LESSONS, "10")?;
+    fn check_lessons(&self, lessons: u32, section: &KeyedTable<'_>, link: &Link<'_>) -> Result<(), ConfigError> {
+        let item = section.0.required("lessons", "10")?;
         if lessons > 0 && link.skills().next().is_some() {
             let message = format!("`{}` cannot have lessons: nobody demonstrates skills", link.name);
             return Err(item.error(message, "set lessons = 0; the skills that it chooses among can be taught"));
         }
-        if lessons > self.bank {
-            let hint = format!("the teacher's bank has {}; raise `teacher.bank`", self.bank);
+        if lessons > self.taught {
+            let hint = format!("the teacher demonstrates {}; raise `teacher.lessons`", self.taught);
             return Err(item.error(format!("`{}` is {lessons}, more than there are", item.name), hint));
         }
-        Ok(lessons)
+        Ok(())
     }
 
-    fn learning(&self, section: &Section<'_>, skill: &Item<'_>, idle: &mut Idle) -> Result<Learning, ConfigError> {
+    /// The numbers of learning, with those of the robot; all others are 0.
+    fn learning(
+        &self,
+        section: &KeyedTable<'_>,
+        skill: &Item<'_>,
+        unused: &mut UnusedKeys,
+    ) -> Result<HyperParams, ConfigError> {
         let mut merged = self.learning.cloned().unwrap_or_else(|| Node::empty(skill.origin().clone()));
         let over = section.0.optional("learning");
         if let Some(over) = &over {
@@ -124,35 +141,48 @@ impl Reader<'_> {
             merged.merge(over.node.clone());
         }
         let name = over.map_or_else(|| "learning".to_owned(), |over| over.name);
-        learning::read(&Item { name, node: &merged }, idle)
+        let section = KeyedTable(Item { name, node: &merged }.table()?);
+        let mut params = self.robot;
+        section.fill("learning.", HyperParams::rows(), &mut params)?;
+        unused.note(&section, params.optimiser)?;
+        let unset = section.0.optional("learning_rate").is_none_or(|item| item.origin().is_default());
+        if params.optimiser == OPTIMISER_SGD && unset {
+            let chosen = section.0.required("optimiser", "\"sgd\"")?;
+            return Err(chosen.error("sgd has no default learning rate", "add `learning_rate = 0.15` beside it"));
+        }
+        section.0.finish()?;
+        params.derive();
+        Ok(params)
     }
 }
 
 /// Where replays in a mirror are asked for: in the skill's own table, or in the one below it.
-impl<'a> Reader<'a> {
+impl<'a> SkillReader<'a> {
     fn mirror_replays(&self, skill: &Item<'a>) -> Item<'a> {
-        let key = keys::MIRROR_REPLAYS.name();
+        let key = "mirror_replays";
         let own = skill.node.get("learning").and_then(|learning| learning.get(key));
         let node = own.or_else(|| self.learning.and_then(|learning| learning.get(key))).unwrap_or(skill.node);
-        Item { name: keys::MIRROR_REPLAYS.path.to_owned(), node }
+        Item { name: "learning.mirror_replays".to_owned(), node }
     }
 }
 
-fn planned(section: &Section<'_>, link: &Link<'_>) -> Result<bool, ConfigError> {
-    let planned = section.flag(&keys::SKILL_PLANNED)?;
-    if planned && link.skills().next().is_some() {
-        let item = section.required(&keys::SKILL_PLANNED, "false")?;
-        let message = format!("`{}` chooses among skills and cannot be planned", link.name);
-        return Err(item.error(message, "the planner knows actions only; plan the skills that it chooses among"));
+fn oracle(section: &KeyedTable<'_>, link: &Link<'_>) -> Result<bool, ConfigError> {
+    let item = section.required(&keys::SKILL_ORACLE, "false")?;
+    let oracle = item.flag()?;
+    if oracle && link.skills().next().is_some() {
+        let message = format!("`{}` chooses among skills and cannot be an oracle", link.name);
+        return Err(
+            item.error(message, "the planner knows actions only; let the skills that it chooses among be oracles")
+        );
     }
-    Ok(planned)
+    Ok(oracle)
 }
 
 /// Makes a complaint, from its message and hint, about the place of a name.
-type Place<'a> = dyn Fn(String, String) -> ConfigError + 'a;
+type Complain<'a> = dyn Fn(String, String) -> ConfigError + 'a;
 
 /// An event that can happen in this world.
-fn event(name: &str, place: &Place<'_>, world: Option<&World>) -> Result<Event, ConfigError> {
+fn event(name: &str, place: &Complain<'_>, world: Option<&World>) -> Result<Event, ConfigError> {
     let names = Event::ALL.map(Event::name);
     let Some(code) = names.iter().position(|known| *known == name) else {
         return Err(place(format!("`{name}` is not one of the events"), suggest(name, "events", &names)));
@@ -166,31 +196,30 @@ fn event(name: &str, place: &Place<'_>, world: Option<&World>) -> Result<Event, 
     }
 }
 
-fn reward(item: &Item<'_>, world: Option<&World>) -> Result<[f32; Event::ALL.len()], ConfigError> {
-    let mut reward = [0.0; Event::ALL.len()];
+fn reward(item: &Item<'_>, world: Option<&World>) -> Result<[f32; EVENTS], ConfigError> {
+    let mut reward = [0.0; EVENTS];
     for (entry, amount) in item.table()?.all() {
         let event = event(&entry.key, &|message, hint| entry.origin.error(message, hint), world)?;
         reward[event as usize] = amount.number(keys::AMOUNT)?;
     }
-    if reward == [0.0; Event::ALL.len()] {
+    if reward == [0.0; EVENTS] {
         let message = format!("`{}` pays for nothing, so there is nothing to learn", item.name);
         return Err(item.error(message, "write { docked = 100, collision = -10 }, or other events and amounts"));
     }
     Ok(reward)
 }
 
-fn ends(item: &Item<'_>, world: Option<&World>) -> Result<u32, ConfigError> {
+fn goal(item: &Item<'_>, world: Option<&World>) -> Result<u32, ConfigError> {
     // A skill may go on until its step limit.
     if item.items()?.is_empty() {
         return Ok(0);
     }
-    let most = Event::ALL.len();
-    let events = item.distinct(most, |one| event(one.text()?, &|message, hint| one.error(message, hint), world))?;
+    let events = item.distinct(EVENTS, |one| event(one.text()?, &|message, hint| one.error(message, hint), world))?;
     Ok(events.iter().fold(0, |bits, event| bits | event.bit()))
 }
 
 /// The name of a region in which a trial can start.
-fn region(name: &str, place: &Place<'_>, ground: Option<Ground<'_>>) -> Result<String, ConfigError> {
+fn region(name: &str, place: &Complain<'_>, ground: Option<Ground<'_>>) -> Result<String, ConfigError> {
     let Some(ground) = ground else { return Ok(name.to_owned()) };
     let world = ground.world;
     let names = world.region_names();

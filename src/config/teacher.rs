@@ -1,19 +1,19 @@
 //! The keys of `teacher`.
 
 use super::keys;
-use super::plan::Teacher;
+use super::plan::TeacherPlan;
 use crate::toml::error::ConfigError;
-use crate::toml::reader::{Item, Section};
+use crate::toml::reader::{Item, KeyedTable};
 
 /// Reads a complete `teacher` table.
-pub(super) fn read(item: &Item<'_>) -> Result<Teacher, ConfigError> {
-    let section = Section(item.table()?);
-    let teacher = Teacher {
-        bank: section.whole(&keys::TEACHER_BANK)?,
+pub(super) fn read(item: &Item<'_>) -> Result<TeacherPlan, ConfigError> {
+    let section = KeyedTable(item.table()?);
+    let teacher = TeacherPlan {
+        lessons: section.word(&keys::TEACHER_LESSONS)?,
         discount: section.number(&keys::TEACHER_DISCOUNT)?,
         backward_cost: section.number(&keys::TEACHER_BACKWARD_COST)?,
         collision_cost: section.number(&keys::TEACHER_COLLISION_COST)?,
-        episodes: section.whole(&keys::TEACHER_EPISODES)?,
+        eval_episodes: section.word(&keys::TEACHER_EVAL_EPISODES)?,
     };
     section.0.finish()?;
     Ok(teacher)

@@ -1,26 +1,26 @@
 //! Other circumstances in which the roots that were learned are tested once more.
 
 use super::arms::small_name;
-use super::plan::{Alteration, Arm, Event, Noise};
+use super::plan::{Alteration, ArmPlan, Event, Noise};
 use super::worlds::{Ground, Worlds};
 use super::{keys, robot};
-use crate::toml::document::{Node, Origin};
+use crate::toml::document::{Node, SourceSpan};
 use crate::toml::error::ConfigError;
 use crate::toml::reader::Item;
 use crate::world::World;
 
-/// Reads the table `alter`. Every arm's root must be able to do its test in each of its worlds.
+/// Reads the table `transfer`. Every arm's root must be able to do its test in each of its worlds.
 pub(super) fn read<'a>(
     altered: &Node,
     base: &Node,
-    arms: impl Iterator<Item = &'a Arm> + Clone,
+    arms: impl Iterator<Item = &'a ArmPlan> + Clone,
     worlds: &mut Worlds<'_>,
 ) -> Result<Vec<Alteration>, ConfigError> {
     let mut alterations = Vec::new();
-    for (entry, item) in (Item { name: "alter".to_owned(), node: altered }).table()?.all() {
+    for (entry, item) in (Item { name: "transfer".to_owned(), node: altered }).table()?.all() {
         small_name(entry, "an alteration")?;
         let table = item.table()?;
-        let (world, noise) = (table.optional(keys::ALTER_WORLD.name()), table.optional(keys::ALTER_NOISE.name()));
+        let (world, noise) = (table.optional(keys::TRANSFER_WORLD.name()), table.optional(keys::TRANSFER_NOISE.name()));
         table.finish()?;
         let place = match (&world, &noise) {
             (Some(world), _) => world.origin(),
@@ -52,7 +52,7 @@ fn laid_over(item: &Item<'_>, base: &Node) -> Result<Noise, ConfigError> {
 }
 
 /// Refuses a world with other rooms than `usual`: what was learned there, and the results, tell rooms by their order.
-fn check_rooms(world: &World, usual: &World, place: &Origin) -> Result<(), ConfigError> {
+fn check_rooms(world: &World, usual: &World, place: &SourceSpan) -> Result<(), ConfigError> {
     let names = |world: &World| world.rooms.iter().map(|room| room.name.clone()).collect::<Vec<_>>();
     let (found, wanted) = (names(world), names(usual));
     if found == wanted {
@@ -64,19 +64,19 @@ fn check_rooms(world: &World, usual: &World, place: &Origin) -> Result<(), Confi
 }
 
 /// Refuses a world in which a root's tests cannot start, or never end as achieved.
-fn check_root(ground: Ground<'_>, arm: &Arm, place: &Origin) -> Result<(), ConfigError> {
+fn check_root(ground: Ground<'_>, arm: &ArmPlan, place: &SourceSpan) -> Result<(), ConfigError> {
     let Some(root) = arm.skills.last() else { return Ok(()) };
     let world = ground.world;
-    let problem = match ground.region_is_empty(&root.tests) {
-        None => Some(format!("the world `{}` has no region `{}`", world.name, root.tests)),
-        Some(true) => Some(format!("in the world `{}` the robot fits nowhere in `{}`", world.name, root.tests)),
+    let problem = match ground.region_is_empty(&root.eval_starts) {
+        None => Some(format!("the world `{}` has no region `{}`", world.name, root.eval_starts)),
+        Some(true) => Some(format!("in the world `{}` the robot fits nowhere in `{}`", world.name, root.eval_starts)),
         Some(false) => None,
     };
     if let Some(problem) = problem {
         let hint = "give the altered world this region, or test in another one";
         return Err(place.error(format!("{problem}, where tests of `{}` start", root.name), hint));
     }
-    for event in Event::ALL.into_iter().filter(|event| root.ends & event.bit() != 0) {
+    for event in Event::ALL.into_iter().filter(|event| root.goal & event.bit() != 0) {
         if let Some(lacking) = world.lacks(event.needs()).map(|part| part.name()) {
             let message = format!("`{}` cannot happen: the world `{}` has no {lacking}", event.name(), world.name);
             return Err(place.error(message, format!("add {lacking} to it: tests of `{}` end with this", root.name)));

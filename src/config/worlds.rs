@@ -2,6 +2,7 @@
 
 use super::keys;
 use super::plan::PlacedWorld;
+use crate::toml::Files;
 use crate::toml::document::{Node, Value};
 use crate::toml::error::ConfigError;
 use crate::toml::reader::Item;
@@ -13,6 +14,7 @@ use std::path::{Path, PathBuf};
 /// World files read so far.
 #[derive(Debug)]
 pub(super) struct Worlds<'a> {
+    files: &'a dyn Files,
     /// The config file, from whose folder paths start.
     config: &'a Path,
     /// Index of the world that each of these texts names.
@@ -50,8 +52,8 @@ impl Ground<'_> {
 }
 
 impl<'a> Worlds<'a> {
-    pub(super) fn new(config: &'a Path) -> Self {
-        Self { config, named: BTreeMap::new(), paths: Vec::new(), placed: Vec::new(), looked: Vec::new() }
+    pub(super) fn new(files: &'a dyn Files, config: &'a Path) -> Self {
+        Self { files, config, named: BTreeMap::new(), paths: Vec::new(), placed: Vec::new(), looked: Vec::new() }
     }
 
     /// The floor plan with this index.
@@ -72,11 +74,11 @@ impl<'a> Worlds<'a> {
 
     fn find(&mut self, item: &Item<'_>, name: &str) -> Result<usize, ConfigError> {
         let path = self.config.parent().unwrap_or(Path::new("")).join(name);
-        let real = std::fs::canonicalize(&path).unwrap_or_else(|_| path.clone());
+        let real = self.files.identity(&path);
         if let Some(index) = self.paths.iter().position(|known| *known == real) {
             return Ok(index);
         }
-        let text = std::fs::read_to_string(&path).map_err(|error| {
+        let text = self.files.read(&path).map_err(|error| {
             let error = ConfigError::unreadable(&path, "world file", &error);
             let hint =
                 format!("it was looked for at {}; the path starts from the config file's folder", path.display());

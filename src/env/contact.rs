@@ -5,15 +5,10 @@
 
 use super::workgroup::Workgroup;
 use crate::layout::LANES;
+use crate::layout::lengths::{BUMPER_GAP, INVERSE_RADIUS, RADIUS};
 use crate::math::functions::{reciprocal, square_root};
 use crate::math::reduce::{lanes_min, lanes_or};
 
-/// Radius of the body, inches (paper, Figure 1).
-pub const RADIUS: f32 = 12.0;
-/// 1 / [`RADIUS`].
-pub const INVERSE_RADIUS: f32 = 0.083_333_336;
-/// The bumpers feel what is this close to the body, inches. Our choice.
-pub const BUMPER_GAP: f32 = 0.4;
 /// A distance beyond any world.
 pub const FAR: f32 = 1.0e6;
 /// Slower approach than this, per inch travelled, is no approach.

@@ -23,17 +23,17 @@ impl Workgroup<'_> {
         let across = (self.range_toward(0) + self.range_toward(2)) * INVERSE_LIMIT - 1.0;
         let along = (self.range_toward(1) + self.range_toward(3)) * INVERSE_LIMIT - 1.0;
         // The first reading stands for the past that there is not.
-        let past = if self.agent.step == 0 { 0.0 } else { self.params[s].range_mean };
+        let past = if self.agent.step == 0 { 0.0 } else { self.params[s].range_decay };
         self.agent.east_west = flush(past * self.agent.east_west + (1.0 - past) * across);
         self.agent.north_south = flush(past * self.agent.north_south + (1.0 - past) * along);
         let lit = self.record.observation.lit_bearings() != 0;
-        self.agent.light = if lit { 1.0 } else { flush(self.agent.light * self.params[s].light_trace) };
+        self.agent.light = if lit { 1.0 } else { flush(self.agent.light * self.params[s].light_decay) };
         let passed = (self.agent.events & PASSED_DOOR) != 0;
         let turn = sin_cos(self.record.observation.compass_degrees());
-        self.agent.door = if passed { 1.0 } else { flush(self.agent.door * self.params[s].door_trace) };
+        self.agent.door = if passed { 1.0 } else { flush(self.agent.door * self.params[s].door_decay) };
         self.agent.door_cosine =
-            if passed { turn.1 } else { flush(self.agent.door_cosine * self.params[s].door_trace) };
-        self.agent.door_sine = if passed { turn.0 } else { flush(self.agent.door_sine * self.params[s].door_trace) };
+            if passed { turn.1 } else { flush(self.agent.door_cosine * self.params[s].door_decay) };
+        self.agent.door_sine = if passed { turn.0 } else { flush(self.agent.door_sine * self.params[s].door_decay) };
     }
 
     /// Writes the memories into the record.

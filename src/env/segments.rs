@@ -4,16 +4,12 @@
 //! hide the light. That changes no bit: what a list leaves out is too far away or beside the way, and neither the least
 //! of some numbers nor the bits set in any depends on the order. Tests compare each list with all segments.
 
-use crate::env::contact::{BUMPER_GAP, RADIUS};
+use crate::layout::lengths::{BUMPER_GAP, CELLS_PER_INCH, LIST_CELL, RADIUS};
 use crate::layout::{MAX_SEGMENTS, Segment, WorldUniform};
 use std::collections::HashMap;
 
 /// Segments of a block: a vector of most CPUs, and lists seldom have more.
 pub const BLOCK: usize = 8;
-/// Cells per inch of the segment lists.
-pub const CELLS_PER_INCH: f32 = 0.083_333_336;
-/// Inches of a cell's side.
-const CELL: f32 = 12.0;
 /// The farthest that a robot may want to go for a cell's list to hold all that it could touch, inches.
 pub const LISTED_TRAVEL: f32 = 16.0;
 /// Much more than rounding can move anything by, inches.
@@ -80,8 +76,8 @@ impl SegmentGrid {
         let mut floor = Self { plan: *plan, all: blocks(&plan.segment[..used]), listed: Vec::new(), cells: Vec::new() };
         let mut known = HashMap::new();
         for number in 0..plan.cell_columns * plan.cell_rows {
-            let x = ((number % plan.cell_columns) as f32 + 0.5) * CELL;
-            let y = ((number / plan.cell_columns) as f32 + 0.5) * CELL;
+            let x = ((number % plan.cell_columns) as f32 + 0.5) * LIST_CELL;
+            let y = ((number / plan.cell_columns) as f32 + 0.5) * LIST_CELL;
             let touched: Vec<u32> = (0..used as u32).filter(|i| can_touch(&plan.segment[*i as usize], x, y)).collect();
             let cell = Cell {
                 heard: floor.place(&mut known, list(tables, plan.cell_starts + number)),
@@ -146,7 +142,7 @@ fn can_touch(segment: &Segment, x: f32, y: f32) -> bool {
     let (wx, wy) = (x - segment.ax, y - segment.ay);
     let along = (segment.tx * wx + segment.ty * wy).max(0.0).min(segment.length);
     let (px, py) = (segment.tx * along - wx, segment.ty * along - wy);
-    let corner = CELL * std::f32::consts::FRAC_1_SQRT_2;
+    let corner = LIST_CELL * std::f32::consts::FRAC_1_SQRT_2;
     px.hypot(py) <= corner + LISTED_TRAVEL + RADIUS + BUMPER_GAP + MARGIN
 }
 

@@ -5,6 +5,7 @@
 //! 1 / distance, is linear in the direction of the ray, and all that depends on the segment alone is worked out once.
 
 use super::workgroup::Workgroup;
+use crate::layout::lengths::CELLS_PER_INCH;
 use crate::layout::{LANES, RAYS};
 use crate::math::functions::{reciprocal, sin_cos};
 use crate::math::reduce::Lanes;
@@ -18,8 +19,6 @@ pub const INVERSE_LIMIT: f32 = 0.007_874_016;
 /// Segments whose line passes the robot closer than this, inches, are taken to pass at this distance: they are seen
 /// end on, and f32 cannot tell on which side the robot is.
 pub const SLIVER: f32 = 1.0e-4;
-/// Cells of the segment lists per inch.
-pub const CELLS_PER_INCH: f32 = 0.083_333_336;
 /// Lines through the robot: a ray and the opposite one are on the same line.
 pub const LINES: usize = RAYS / 2;
 

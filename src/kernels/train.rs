@@ -42,7 +42,7 @@ impl Workgroup<'_> {
         let s = self.state.skill as usize;
         let begun = self.state.replay;
         let finished = self.state.replay_left == 0 && self.state.replay_open == 0;
-        if finished && begun >= self.params[s].taught_passes * self.params[s].lessons {
+        if finished && begun >= self.params[s].pretrain_epochs * self.params[s].lessons {
             self.conclude();
         } else {
             if finished {
@@ -87,7 +87,7 @@ impl Workgroup<'_> {
         let root = self.state.skill;
         let s = root as usize;
         let words = self.skills[s].record_words as usize;
-        let slot = self.state.remembered % self.params[s].memory;
+        let slot = self.state.remembered % self.params[s].replay_capacity;
         let lesson = (self.skills[s].memory_offset + slot * self.skills[s].lesson_stride) as usize;
         let step = self.agent.step;
         (self.forms.draw_step)(self, self.learner_stream(self.state.trial, step, Purpose::Step));

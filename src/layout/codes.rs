@@ -30,21 +30,4 @@ codes! {
     TERMINATED = 1;
     /// End of a lesson: the step limit cut the trial.
     TRUNCATED = 2;
-
-    /// A child is chosen by the learned values.
-    CHOICE_LEARNED = 0;
-    /// A child is chosen at random.
-    CHOICE_RANDOM = 1;
-
-    /// Learning from every step, the best next value over all children of a free choice.
-    BACKUP_STEPS = 0;
-    /// Learning at decisions.
-    BACKUP_DECISIONS = 2;
-
-    /// Gradient descent with momentum.
-    OPTIMISER_SGD = 0;
-    /// Adam.
-    OPTIMISER_ADAM = 1;
-    /// Adam with one second moment for each row of weights.
-    OPTIMISER_ADAM_ROWS = 2;
 }

@@ -15,7 +15,7 @@ macro_rules! constants {
     ($($(#[$doc:meta])* $name:ident = $value:expr;)*) => {
         $($(#[$doc])* pub const $name: usize = $value;)*
         /// Name and value of every constant that the shaders share.
-        pub const CONSTANTS: &[(&str, usize)] = &[$((stringify!($name), $name)),*];
+        pub(super) const CONSTANTS: &[(&str, usize)] = &[$((stringify!($name), $name)),*];
     };
 }
 
@@ -23,7 +23,7 @@ macro_rules! codes {
     ($($(#[$doc:meta])* $name:ident = $value:expr;)*) => {
         $($(#[$doc])* pub const $name: u32 = $value;)*
         /// Name and value of every code that the shaders share.
-        pub const CODES: &[(&str, u32)] = &[$((stringify!($name), $name)),*];
+        pub(super) const CODES: &[(&str, u32)] = &[$((stringify!($name), $name)),*];
     };
 }
 

@@ -6,14 +6,17 @@
 #[macro_use]
 mod macros;
 
-mod codes;
 pub mod actions;
+pub mod choices;
+mod codes;
 mod dispatch;
 pub mod events;
-mod params;
+pub mod lengths;
+pub mod params;
 pub mod prelude;
 pub mod purpose;
 mod records;
+pub mod schema;
 pub mod sensors;
 mod shape;
 mod sizes;
@@ -21,28 +24,19 @@ mod state;
 mod world;
 mod world_parts;
 
-pub use codes::*;
 pub use actions::{ACTIONS, Action};
+pub use codes::*;
 pub use dispatch::Dispatch;
 pub use events::{EVENTS, Event};
 pub use macros::Layout;
 pub use params::{HyperParams, Noise};
-pub use records::{LessonHeader, Observation, Step, TrialRecord};
+pub use prelude::{LAYOUTS, layout_of};
+pub use records::{
+    ELEMENTARY_STEP_WORDS, LESSON_HEADER_WORDS, LessonHeader, Observation, STEP_WORDS, Step, TRIAL_WORDS, TrialRecord,
+};
 pub use sensors::Input;
 pub use shape::SkillShape;
 pub use sizes::*;
 pub use state::{Agent, Episode, LearnerState, Moved, Robot};
 pub use world::{Area, Segment, WorldUniform};
 pub use world_parts::WorldPart;
-
-/// How Rust lays out every struct that the shaders share.
-pub const LAYOUTS: [&[Layout]; 6] =
-    [world::LAYOUTS, records::LAYOUTS, shape::LAYOUTS, params::LAYOUTS, state::LAYOUTS, dispatch::LAYOUTS];
-
-/// WGSL text of every one of them.
-const STRUCTS: [&[&str]; 6] = [world::STRUCTS, records::STRUCTS, shape::STRUCTS, params::STRUCTS, state::STRUCTS, dispatch::STRUCTS];
-
-/// How Rust lays out the struct of this name.
-pub fn layout_of(name: &str) -> Option<&'static Layout> {
-    LAYOUTS.into_iter().flatten().find(|layout| layout.name == name)
-}

@@ -75,6 +75,17 @@ shared! {
     }
 }
 
+constants! {
+    /// Words of a recorded step of a skill over actions.
+    ELEMENTARY_STEP_WORDS = std::mem::offset_of!(Step, high_level) / 4;
+    /// Words of a recorded step of a skill over skills.
+    STEP_WORDS = size_of::<Step>() / 4;
+    /// Words that open a lesson.
+    LESSON_HEADER_WORDS = size_of::<LessonHeader>() / 4;
+    /// Words of a row of the trial table.
+    TRIAL_WORDS = size_of::<TrialRecord>() / 4;
+}
+
 /// Structs whose words the shaders reach by number, and what opens those words' names.
 pub(super) const WORDS: [(&str, &str); 3] =
     [("Observation", "OBSERVATION"), ("Step", "STEP"), ("LessonHeader", "LESSON")];

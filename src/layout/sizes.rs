@@ -31,14 +31,6 @@ constants! {
     SONAR_WORDS = RAYS / 4;
     /// Bit of `light_bumpers` from which the bumpers stand.
     BUMPERS_FROM = 24;
-    /// Words of a recorded step of a skill over actions.
-    ELEMENTARY_STEP_WORDS = std::mem::offset_of!(super::Step, high_level) / 4;
-    /// Words of a recorded step of a skill over skills.
-    STEP_WORDS = size_of::<super::Step>() / 4;
-    /// Words that open a lesson.
-    LESSON_HEADER_WORDS = size_of::<super::LessonHeader>() / 4;
-    /// Words of a row of the trial table.
-    TRIAL_WORDS = size_of::<super::TrialRecord>() / 4;
     /// Entries of a sonar coding table.
     SONAR_CODES = 128;
 }

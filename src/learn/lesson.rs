@@ -6,10 +6,9 @@
 
 use crate::env::workgroup::Workgroup;
 use crate::layout::events::{DECISION_BIT, EVENTS_FROM};
-use crate::layout::{EVENTS, LESSON_HEADER_WORDS, LessonHeader, Step, TERMINATED, TrialRecord};
+use crate::layout::{LESSON_HEADER_WORDS, LessonHeader, Step, TERMINATED, TrialRecord};
 use crate::policy::persistence::Choices;
 use std::mem::offset_of;
-
 
 /// Word of a step that holds the choice.
 pub const STEP_CHOICE: usize = offset_of!(Step, choice) / 4;
@@ -50,11 +49,6 @@ pub fn choice_is_free(word: u32) -> bool {
     (word >> DECISION_BIT) != 0
 }
 
-/// What a choice brought about.
-pub fn choice_events(word: u32) -> u32 {
-    (word >> EVENTS_FROM) & ((1 << EVENTS) - 1)
-}
-
 impl Workgroup<'_> {
     /// Notes in the record what was chosen, and among what.
     pub fn set_choice(&mut self, child: u32, choices: Choices) {
@@ -65,7 +59,8 @@ impl Workgroup<'_> {
     /// Stores the first `words` words of the record as step `step` of the lesson at word `lesson`.
     pub fn write_step(&mut self, words: usize, lesson: usize, step: usize) {
         let at = lesson + LESSON_HEADER_WORDS + step * words;
-        self.lessons[at..at + words].copy_from_slice(&bytemuck::cast_slice(std::slice::from_ref(&self.record))[..words]);
+        self.lessons[at..at + words]
+            .copy_from_slice(&bytemuck::cast_slice(std::slice::from_ref(&self.record))[..words]);
     }
 
     /// Adds what step `step` of the lesson brought about.
@@ -78,7 +73,8 @@ impl Workgroup<'_> {
     /// Completes a lesson.
     pub fn write_header(&mut self, lesson: usize, steps: u32, end: u32, reward: f32, collisions: u32) {
         let header = LessonHeader { steps, end, reward, collisions };
-        self.lessons[lesson..lesson + LESSON_HEADER_WORDS].copy_from_slice(&bytemuck::cast::<_, [u32; LESSON_HEADER_WORDS]>(header));
+        self.lessons[lesson..lesson + LESSON_HEADER_WORDS]
+            .copy_from_slice(&bytemuck::cast::<_, [u32; LESSON_HEADER_WORDS]>(header));
     }
 
     /// Appends a row to the trial table.

@@ -11,9 +11,8 @@ use super::lesson::{
     LESSON_END, LESSON_STEPS, STEP_CHOICE, STEP_REWARD, choice_allowed, choice_child, choice_is_free, choice_offered,
 };
 use crate::env::workgroup::Workgroup;
-use crate::layout::{
-    BACKUP_DECISIONS, BACKUP_STEPS, LANES, LESSON_HEADER_WORDS, PHASE_FAILED, SkillShape, TRUNCATED,
-};
+use crate::layout::choices::{BACKUP_DECISIONS, BACKUP_STEPS};
+use crate::layout::{LANES, LESSON_HEADER_WORDS, PHASE_FAILED, SkillShape, TRUNCATED};
 use crate::math::functions::{exponential, is_number, ln};
 use crate::math::reduce::lanes_or;
 use crate::math::rng::{Purpose, Stream, below, draw, unit};
@@ -54,18 +53,21 @@ impl Workgroup<'_> {
     }
 
     /// Word of the memory at which a remembered lesson stands, its age drawn from an exponential
-    /// distribution of mean `mean_age`, cut off at the oldest.
+    /// distribution of mean `replay_mean_age`, cut off at the oldest.
     pub fn recent_lesson(&self, word: u32) -> u32 {
         let skill = self.state.skill as usize;
         let s = skill;
-        let kept =
-            if self.state.remembered < self.params[s].memory { self.state.remembered } else { self.params[s].memory };
+        let kept = if self.state.remembered < self.params[s].replay_capacity {
+            self.state.remembered
+        } else {
+            self.params[s].replay_capacity
+        };
         // The host sends the negative inverse of the mean age: kernels do not divide.
-        let whole = 1.0 - exponential(self.params[s].age_decay * kept as f32);
-        let depth = -ln(1.0 - unit(word) * whole) * self.params[s].mean_age;
+        let whole = 1.0 - exponential(self.params[s].replay_age_decay * kept as f32);
+        let depth = -ln(1.0 - unit(word) * whole) * self.params[s].replay_mean_age;
         let drawn = depth as u32;
         let age = if drawn < kept { drawn } else { kept - 1 };
-        let slot = (self.state.remembered - 1 - age) % self.params[s].memory;
+        let slot = (self.state.remembered - 1 - age) % self.params[s].replay_capacity;
         self.skills[skill].memory_offset + slot * self.skills[skill].lesson_stride
     }
 
@@ -107,7 +109,7 @@ impl Workgroup<'_> {
     /// Whether a step between two decisions is learned from too.
     pub fn learn_between_decisions(&self, step: u32) -> bool {
         let word = draw(self.learner_stream(self.state.trial, self.state.replay, Purpose::Inner), step)[0];
-        unit(word) < self.params[self.state.skill as usize].inner_share
+        unit(word) < self.params[self.state.skill as usize].intra_skill_share
     }
 
     /// What the Q-value of the step at word `at` of the lesson in replay should be, given what follows it.
@@ -116,7 +118,7 @@ impl Workgroup<'_> {
         let reward = f32::from_bits(self.lesson_word(at + STEP_REWARD)) * self.params[s].value_scale;
         let future =
             (1.0 - self.params[s].lambda) * self.state.next_best + self.params[s].lambda * self.state.next_return;
-        clip(reward + self.params[s].gamma * future, self.params[s].target_limit)
+        clip(reward + self.params[s].gamma * future, self.params[s].target_clip)
     }
 
     /// Learns from the next step of the lesson in replay, last step first.
@@ -150,11 +152,11 @@ impl Workgroup<'_> {
                 self.state.next_return = found.best;
             } else {
                 let child = if mirrored { self.skills[s].mirror_child[done as usize] } else { done };
-                let taught = self.params[s].taught_always == 1 && self.state.replay_taught == 1;
+                let taught = self.params[s].taught_as_policy == 1 && self.state.replay_taught == 1;
                 let policy = taught || self.weights[child as usize] > self.params[s].policy_threshold * found.total;
                 let stretched = found.best + self.params[s].advantage_scale * (target_value - found.best);
                 let plain = self.params[s].advantage_scale == 1.0;
-                let aim = if plain { target_value } else { clip(stretched, self.params[s].target_limit) };
+                let aim = if plain { target_value } else { clip(stretched, self.params[s].target_clip) };
                 let delta = aim - self.q[child as usize];
                 // Of all children: one that is never chosen again would not be found out otherwise.
                 let mut sound = is_number(delta);

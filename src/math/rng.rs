@@ -7,7 +7,7 @@ use crate::layout::LANES;
 pub use crate::layout::purpose::{PURPOSES, Purpose};
 
 /// The stream of one trial: everything in a counter but the draw.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Stream {
     /// Run seed and learner seed.
     pub key: [u32; 2],
@@ -51,7 +51,7 @@ pub fn draw(stream: Stream, draw: u32) -> [u32; 4] {
 
 /// The random words of one primitive step: entry `i` holds draw number `i`. Rays share the first six draws, a word
 /// each, and so do the light's bearings theirs. The rest is named in `env/observe`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct StepRandom {
     /// What they are drawn from: a backend may leave the light's draws for when the light is seen.
     pub stream: Stream,
@@ -63,13 +63,6 @@ pub struct StepRandom {
     pub z: [u32; LANES],
     /// Fourth word.
     pub w: [u32; LANES],
-}
-
-impl Default for StepRandom {
-    fn default() -> Self {
-        let stream = Stream { key: [0; 2], skill: 0, trial: 0, step: 0, purpose: 0 };
-        Self { stream, x: [0; LANES], y: [0; LANES], z: [0; LANES], w: [0; LANES] }
-    }
 }
 
 impl StepRandom {

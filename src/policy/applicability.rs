@@ -3,9 +3,6 @@
 use crate::env::workgroup::Workgroup;
 use crate::layout::{MAX_CHILDREN, SKILL_CODE};
 
-/// Threshold of a child that is always applicable.
-pub const ALWAYS: f32 = -2.0;
-
 /// Packs what a skill runs: the child, the steps since it was chosen, and the children that were applicable then.
 #[inline(always)]
 pub fn run_word(child: u32, steps: u32, applicable: u32) -> u32 {

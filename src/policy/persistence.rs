@@ -54,7 +54,7 @@ impl Workgroup<'_> {
         let achieved = (self.agent.events & goal) != 0;
         let fresh = (applicable & !before & !own) != 0;
         let lost = self.params[s].interrupt == 1 && (applicable & own) == 0;
-        let late = self.params[s].decision_steps > 0 && run_steps(self.agent.run[s]) >= self.params[s].decision_steps;
+        let late = self.params[s].child_timeout > 0 && run_steps(self.agent.run[s]) >= self.params[s].child_timeout;
         let free = !persist || !skill || achieved || fresh || lost || late;
         // What runs on is an alternative, even where it is no longer applicable: the step is learned with it.
         let offered = if free { choices } else { choices | own };

@@ -4,7 +4,8 @@
 //! Sets of children are bits: bit c stands for child c.
 
 use crate::env::workgroup::Workgroup;
-use crate::layout::{CHOICE_LEARNED, CHOICE_RANDOM, MAX_CHILDREN};
+use crate::layout::MAX_CHILDREN;
+use crate::layout::choices::{POLICY_LEARNED, POLICY_RANDOM};
 use crate::math::functions::exponential;
 use crate::math::rng::unit;
 
@@ -70,14 +71,14 @@ impl Workgroup<'_> {
 
     /// Chooses among the allowed children by the skill's own rule. `greedy` takes the best learned value.
     pub fn choose(&mut self, skill: u32, allowed: u32, inverse_temperature: f32, greedy: bool, word: u32) -> u32 {
-        let choice = self.params[skill as usize].choice;
-        let even = choice != CHOICE_LEARNED;
+        let choice = self.params[skill as usize].policy;
+        let even = choice != POLICY_LEARNED;
         let children = self.skills[skill as usize].children;
         let found = self.boltzmann(children, allowed, if even { 0.0 } else { inverse_temperature });
         let drawn = self.sample(found, word);
         let first = allowed.trailing_zeros();
         let learned = if greedy { found.greedy } else { drawn };
-        let other = if choice == CHOICE_RANDOM { drawn } else { first };
+        let other = if choice == POLICY_RANDOM { drawn } else { first };
         if even { other } else { learned }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::forward::lanes_used;
 use crate::env::workgroup::Workgroup;
-use crate::layout::{OPTIMISER_ADAM_ROWS, OPTIMISER_SGD};
+use crate::layout::choices::{OPTIMISER_ADAM_ROWS, OPTIMISER_SGD};
 
 impl Workgroup<'_> {
     /// Moves the net of `child` so that its output changes by about `delta` times the learning rate `step_size`.

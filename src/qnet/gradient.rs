@@ -54,7 +54,8 @@ impl Workgroup<'_> {
     /// Learning rate of a trial: it falls linearly over the first trials.
     pub fn learning_rate(&self, skill: u32, trial: u32) -> f32 {
         let s = skill as usize;
-        let risen = if trial < self.params[s].rate_trials { trial } else { self.params[s].rate_trials };
-        self.params[s].rate * (1.0 - self.params[s].rate_fall * risen as f32)
+        let risen =
+            if trial < self.params[s].learning_rate_trials { trial } else { self.params[s].learning_rate_trials };
+        self.params[s].learning_rate * (1.0 - self.params[s].learning_rate_fall * risen as f32)
     }
 }

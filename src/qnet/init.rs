@@ -23,7 +23,7 @@ pub fn init(nets: &mut [f32], skill: &SkillShape, skill_number: u32, params: &Hy
                     purpose: Purpose::Init as u32,
                 };
                 let word = draw(stream, lane)[0];
-                nets[net + (row as usize) * LANES + lane as usize] = (unit(word) * 2.0 - 1.0) * params.init;
+                nets[net + (row as usize) * LANES + lane as usize] = (unit(word) * 2.0 - 1.0) * params.init_range;
             }
         }
         let clock = (skill.clock_offset + child) as usize;

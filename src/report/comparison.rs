@@ -1,7 +1,7 @@
 //! The paper's comparison: arms that learn one task with skills below their roots and without.
 
 use super::statistics::{quantile, sorted};
-use super::summary::{Score, Series, Skill, Summary};
+use super::summary::{Score, Series, SkillSummary, Summary};
 
 /// The arm that stands for the paper's hierarchical learning, where a run has it.
 pub const MAIN: &str = "hierarchical";
@@ -12,7 +12,7 @@ pub const SINGLE: &str = "monolithic";
 #[derive(Debug, Clone)]
 pub struct Comparison<'a> {
     /// The root skill.
-    pub skill: &'a Skill,
+    pub skill: &'a SkillSummary,
     /// Arms with skills below it: [`MAIN`] first, or else in the order of the rows.
     pub hierarchical: Vec<&'a Series>,
     /// Arms without: [`SINGLE`] first, or else in the order of the rows.
@@ -53,7 +53,7 @@ pub fn median_actions(series: &Series) -> f64 {
 /// Each seed's last test within a budget of actions; a seed that had none by then counts as one that achieves nothing.
 pub fn within(series: &Series, budget: f64) -> Vec<Score> {
     let last = |seed: usize| {
-        let mut tests = series.cells.iter().map(|cell| cell.scores[seed]);
+        let mut tests = series.tests.iter().map(|test| test.scores[seed]);
         let nothing = Score { seed: series.last().scores[seed].seed, episodes: 1, ..Score::default() };
         tests.rfind(|score| f64::from(score.actions) <= budget).unwrap_or(nothing)
     };

@@ -1,30 +1,30 @@
 //! What a run's tables say, summed and judged.
 
-use super::ReportError;
 use super::claims::{self, Claim};
-use super::summary::{self, Diverged, Summary};
-use super::sweep::Swept;
-use super::training::{self, Training};
+use super::error::ReportError;
+use super::summary::{self, DivergedLearner, Summary};
+use super::sweep::SweepResults;
+use super::training::{self, TrainingCurve};
 use crate::run_folder::failures::failures_of;
 use crate::run_folder::sweep::{self, read_sweep};
-use crate::run_folder::{Failure, FinishedRun, RecordError, tables};
+use crate::run_folder::{Divergence, FinishedRun, RecordError, tables};
 use std::collections::BTreeMap;
 use std::path::Path;
 
 /// What tables and figures of learning are made from.
 #[derive(Debug)]
-pub struct Results {
+pub struct RunResults {
     /// The tests; of a run with a sweep, those of each arm's first point.
     pub summary: Summary,
     /// The training of the roots.
-    pub trainings: Vec<Training>,
+    pub trainings: Vec<TrainingCurve>,
     /// The paper's claims.
     pub claims: Vec<Claim>,
     /// What a sweep measured at all points.
-    pub swept: Option<Swept>,
+    pub swept: Option<SweepResults>,
 }
 
-impl Results {
+impl RunResults {
     /// Reads the tables of a run.
     ///
     /// # Errors
@@ -34,7 +34,10 @@ impl Results {
         let seeds = &run.manifest().provenance.seeds;
         let summary = summary::summarise(&names, &rows, seeds, &diverged(run)?);
         let swept = match run.content(sweep::FILE)? {
-            Some(bytes) => Some(Swept::new(read_sweep(&bytes, &run.dir().join(sweep::FILE))?, &summary, seeds)),
+            Some(bytes) => {
+                let sweep = read_sweep(&bytes, &run.dir().join(sweep::FILE))?;
+                Some(SweepResults::new(sweep, &summary, seeds))
+            }
             None => None,
         };
         let summary = if swept.is_some() { summary.first_points() } else { summary };
@@ -63,7 +66,7 @@ fn table<T: Default>(
     Ok(parse(bytes, &run.dir().join(file))?)
 }
 
-fn diverged(run: &FinishedRun) -> Result<Vec<Diverged>, RecordError> {
-    let told = |Failure { arm, point, seed, skill, trial, .. }| Diverged { arm, point, seed, skill, trial };
+fn diverged(run: &FinishedRun) -> Result<Vec<DivergedLearner>, RecordError> {
+    let told = |Divergence { arm, point, seed, skill, trial, .. }| DivergedLearner { arm, point, seed, skill, trial };
     Ok(failures_of(run)?.into_iter().map(told).collect())
 }

@@ -1,11 +1,13 @@
 //! Success by the room in which test trials start.
 
 use super::comparison::Comparison;
-use super::curves::{self, Curve, Figure, Point};
-use super::figures::{Drawing, SUCCESS, Section, file_word};
-use super::numbers::{percent, percent_with, seeds};
-use super::statistics::{BAND_RESAMPLES, Statistic, TABLE_RESAMPLES, bootstrap, mean, quantile, sorted};
-use super::summary::{Bound, Cell, Score, Series};
+use super::figure::axis::PlotAxis;
+use super::figure::curves::{Curve, CurvePoint};
+use super::figure::{Figure, PageSection, PlotArea};
+use super::format::{file_word, seeds};
+use super::learning_curves::SUCCESS;
+use super::statistics::{BAND_RESAMPLES, TABLE_RESAMPLES, bootstrap, mean, mean_of, quantile};
+use super::summary::{PlannerBound, Score, SeedScores, Series};
 use minijinja::{Value, context};
 use rayon::prelude::*;
 
@@ -16,8 +18,7 @@ const WORST: f64 = 0.05;
 
 /// Rooms from which tests of the compared skill start: index and name.
 pub fn of<'a>(comparison: &Comparison<'_>, rooms: &'a [String]) -> Vec<(usize, &'a str)> {
-    let cells = || comparison.hierarchical.iter().map(|series| series.last());
-    let started = |room: usize| cells().any(|cell| !cell.rooms[room].is_empty());
+    let started = |room: usize| comparison.hierarchical.iter().any(|series| !series.last().rooms[room].is_empty());
     let mut rooms: Vec<_> =
         rooms.iter().enumerate().filter(|(room, _)| started(*room)).map(|(room, name)| (room, name.as_str())).collect();
     rooms.sort_by_key(|(_, name)| *name);
@@ -25,45 +26,41 @@ pub fn of<'a>(comparison: &Comparison<'_>, rooms: &'a [String]) -> Vec<(usize, &
 }
 
 /// A figure for the first hierarchical and the first monolithic arm: a curve per room.
-pub fn draw(comparison: &Comparison<'_>, rooms: &[(usize, &str)]) -> Vec<Drawing> {
+pub fn draw(comparison: &Comparison<'_>, rooms: &[(usize, &str)]) -> Vec<Figure> {
     let longest = comparison.leaders().map(|series| series.last().trials).max().unwrap_or(0);
-    let ends = curves::Ends { x: f64::from(longest), y: (0.0, 1.0) };
-    let figure = |series: &Series| Figure {
-        title: format!("{} by starting room", series.label),
-        subtitle: SUCCESS.subtitle.into(),
-        notes: vec![format!(
-            "Mean over n = {}; bands: 95% percentile bootstrap interval.",
-            seeds(series.last().scores.len())
-        )],
-        x_title: "training trials".into(),
-        y_title: SUCCESS.y_title.into(),
-        percent: true,
-        bound: None,
-        curves: rooms.iter().map(|&room| curve(series, room)).collect(),
-        small: true,
-        ends: Some(ends),
+    let figure = |series: &Series| {
+        let figure = Figure {
+            name: format!("rooms-{}", file_word(&series.label)),
+            section: PageSection::Rooms,
+            title: format!("{} by starting room", series.label),
+            subtitle: SUCCESS.subtitle.into(),
+            area: PlotArea::SMALL,
+            x: PlotAxis::linear(SUCCESS.x_title(), (0.0, f64::from(longest.max(1))), false),
+            y: PlotAxis::linear(SUCCESS.y_title, (0.0, 1.0), true).with_grid(),
+            notes: vec![format!(
+                "Mean over n = {}; bands: 95% percentile bootstrap interval.",
+                seeds(series.last().scores.len())
+            )],
+            ..Figure::default()
+        };
+        figure.with_curves(&rooms.iter().map(|&room| curve(series, room)).collect::<Vec<_>>(), None)
     };
-    let drawing = |series: &Series| Drawing {
-        name: format!("rooms-{}", file_word(&series.label)),
-        section: Section::Rooms,
-        svg: curves::draw(&figure(series)),
-    };
-    let curved = comparison.leaders().filter(|series| series.cells.len() > 1);
-    curved.collect::<Vec<_>>().into_par_iter().map(drawing).collect()
+    let curved: Vec<_> = comparison.leaders().filter(|series| series.tests.len() > 1).collect();
+    curved.into_par_iter().map(figure).collect()
 }
 
 fn curve(series: &Series, (room, name): (usize, &str)) -> Curve {
-    let tested = series.cells.iter().filter(|cell| !cell.rooms[room].is_empty());
-    let point = |cell: &Cell| {
-        let values = success(cell, room);
-        Point { x: f64::from(cell.trials), y: mean(&values), band: bootstrap(&values, mean, BAND_RESAMPLES) }
+    let tested = series.tests.iter().filter(|test| !test.rooms[room].is_empty());
+    let point = |test: &SeedScores| CurvePoint {
+        x: f64::from(test.trials),
+        y: bootstrap(&success(test, room), mean, BAND_RESAMPLES),
     };
-    Curve { label: format!("from room {name}"), points: tested.map(point).collect() }
+    Curve::new(format!("from room {name}"), tested.map(point).collect())
 }
 
 /// Success of each seed that was tested from a room.
-pub fn success(cell: &Cell, room: usize) -> Vec<f64> {
-    cell.rooms[room].iter().map(Score::success).collect()
+pub fn success(test: &SeedScores, room: usize) -> Vec<f64> {
+    test.rooms[room].iter().map(Score::success).collect()
 }
 
 /// The value that only 5 % of the seeds fall short of.
@@ -71,51 +68,32 @@ pub fn low_quantile(sorted: &[f64]) -> f64 {
     quantile(sorted, WORST)
 }
 
-/// The tests of an arm that the table shows: the paper's moments for the leaders, and the last one.
-fn moments(series: &Series, leader: bool) -> Vec<&Cell> {
-    let early = MOMENTS.iter().filter(|_| leader).filter_map(|trials| series.near(*trials));
-    let mut cells: Vec<&Cell> = early.chain([series.last()]).collect();
-    cells.dedup_by_key(|cell| cell.trials);
-    cells
-}
-
-/// Rows of the table by arm, test and room.
+/// Rows of the table by arm, test and room: the paper's moments for the leaders, and every arm's last test.
 pub fn table(comparison: &Comparison<'_>, rooms: &[(usize, &str)]) -> Vec<Value> {
     let leaders: Vec<&str> = comparison.leaders().map(|series| series.label.as_str()).collect();
-    let all = comparison.hierarchical.iter().chain(&comparison.monolithic);
-    let rows: Vec<(&Series, &Cell)> = all
-        .flat_map(|series| {
-            let cells = moments(series, leaders.contains(&series.label.as_str()));
-            cells.into_iter().map(move |cell| (*series, cell))
-        })
-        .collect();
-    rows.into_par_iter().map(|(series, cell)| row(series, cell, rooms)).collect()
-}
-
-fn row(series: &Series, cell: &Cell, rooms: &[(usize, &str)]) -> Value {
-    let shown = |values: &[f64], statistic: Statistic| {
-        let sorted = sorted(values);
-        if sorted.is_empty() {
-            return "no tests".to_owned();
-        }
-        percent_with(statistic(&sorted), bootstrap(&sorted, statistic, TABLE_RESAMPLES))
+    let moments = |series: &&'_ Series| {
+        let early = MOMENTS.iter().filter(|_| leaders.contains(&series.label.as_str()));
+        let mut tests: Vec<&SeedScores> =
+            early.filter_map(|trials| series.near(*trials)).chain([series.last()]).collect();
+        tests.dedup_by_key(|test| test.trials);
+        tests.into_iter().map(|test| (series.label.clone(), test.clone())).collect::<Vec<_>>()
     };
-    let overall = cell.values(Score::success);
-    context! {
-        arm => series.label.as_str(),
-        trials => cell.trials,
-        seeds => cell.scores.len(),
-        overall => shown(&overall, mean),
-        worst => shown(&overall, low_quantile),
-        rooms => rooms.iter().map(|&(room, _)| shown(&success(cell, room), mean)).collect::<Vec<_>>(),
-    }
+    let all: Vec<_> = comparison.hierarchical.iter().chain(&comparison.monolithic).flat_map(moments).collect();
+    let row = |(label, test): &(String, SeedScores)| {
+        let overall = test.values(Score::success);
+        context! {
+            arm => label,
+            trials => test.trials,
+            seeds => test.scores.len(),
+            overall => mean_of(&overall),
+            worst => bootstrap(&overall, low_quantile, TABLE_RESAMPLES),
+            rooms => rooms.iter().map(|&(room, _)| mean_of(&success(test, room))).collect::<Vec<_>>(),
+        }
+    };
+    all.par_iter().map(row).collect()
 }
 
-/// The planner's success from each room, as the last row of the table.
-pub fn bound(bound: &Bound, rooms: &[(usize, &str)]) -> Vec<String> {
-    let rates = rooms.iter().map(|&(room, _)| match bound.rooms[room] {
-        score if score.episodes > 0 => percent(score.success()),
-        _ => "no tests".to_owned(),
-    });
-    rates.collect()
+/// The planner's success from each room, as the last row of the table; NaN where it has no tests.
+pub fn bound(bound: &PlannerBound, rooms: &[(usize, &str)]) -> Vec<f64> {
+    rooms.iter().map(|&(room, _)| bound.rooms[room].success()).collect()
 }

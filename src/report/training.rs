@@ -1,6 +1,6 @@
 //! Training trials of the roots, summed over windows: what the paper's Figure 2 shows.
 
-use super::statistics::{Interval, bootstrap_ratio, ratio};
+use super::statistics::{Estimate, ratio_of};
 use super::summary::{Series, Summary};
 use crate::run_folder::{Names, TrialRow};
 use std::collections::BTreeMap;
@@ -10,7 +10,7 @@ pub const WINDOW: u32 = 10;
 
 /// Training trials of one learner, summed.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Tally {
+pub struct TrialSums {
     /// Seed of the learner.
     pub seed: u32,
     /// Trials.
@@ -25,7 +25,29 @@ pub struct Tally {
     pub ratios: f64,
 }
 
-impl Tally {
+impl From<&TrialRow> for TrialSums {
+    fn from(row: &TrialRow) -> Self {
+        Self {
+            seed: row.seed,
+            trials: 1,
+            steps: u64::from(row.steps),
+            collisions: u64::from(row.collisions),
+            reward: f64::from(row.reward),
+            ratios: f64::from(row.reward) / f64::from(row.steps),
+        }
+    }
+}
+
+impl TrialSums {
+    fn add(&mut self, other: &Self) {
+        self.seed = other.seed;
+        self.trials += other.trials;
+        self.steps += other.steps;
+        self.collisions += other.collisions;
+        self.reward += other.reward;
+        self.ratios += other.ratios;
+    }
+
     /// Reward and steps.
     pub fn reward_and_steps(&self) -> (f64, f64) {
         (self.reward, self.steps as f64)
@@ -44,40 +66,32 @@ impl Tally {
 
 /// [`WINDOW`] successive trials of all seeds.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Window {
+pub struct TrainingWindow {
     /// Trials of the skill up to the window's end.
     pub end: u32,
-    /// One tally per seed, by ascending seed.
-    pub tallies: Vec<Tally>,
+    /// Sums of each seed, by ascending seed.
+    pub sums: Vec<TrialSums>,
 }
 
 /// The training of one arm's root; taught lessons are no training trials.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Training {
+pub struct TrainingCurve {
     /// The arm.
     pub arm: String,
     /// The sweep point.
     pub point: u32,
     /// By ascending trials.
-    pub windows: Vec<Window>,
+    pub windows: Vec<TrainingWindow>,
 }
 
-impl Training {
-    /// One tally per seed over the windows that end after `from` trials.
-    pub fn tallies(&self, from: u32) -> Vec<Tally> {
-        let mut sums: BTreeMap<u32, Tally> = BTreeMap::new();
-        for tally in self.windows.iter().filter(|window| window.end > from).flat_map(|window| &window.tallies) {
-            let sum = sums.entry(tally.seed).or_default();
-            *sum = Tally {
-                seed: tally.seed,
-                trials: sum.trials + tally.trials,
-                steps: sum.steps + tally.steps,
-                collisions: sum.collisions + tally.collisions,
-                reward: sum.reward + tally.reward,
-                ratios: sum.ratios + tally.ratios,
-            };
+impl TrainingCurve {
+    /// Sums of each seed over the windows that end after `from` trials.
+    pub fn sums_by_seed(&self, from: u32) -> Vec<TrialSums> {
+        let mut by_seed: BTreeMap<u32, TrialSums> = BTreeMap::new();
+        for sums in self.windows.iter().filter(|window| window.end > from).flat_map(|window| &window.sums) {
+            by_seed.entry(sums.seed).or_default().add(sums);
         }
-        sums.into_values().collect()
+        by_seed.into_values().collect()
     }
 
     /// Trials of the whole training.
@@ -87,41 +101,33 @@ impl Training {
 }
 
 /// The training of a series, if it had any.
-pub fn of<'a>(trainings: &'a [Training], series: &Series) -> Option<&'a Training> {
+pub fn of_series<'a>(trainings: &'a [TrainingCurve], series: &Series) -> Option<&'a TrainingCurve> {
     trainings.iter().find(|training| training.arm == series.arm && training.point == series.point)
 }
 
 /// Sums the trials of each arm's root over windows.
-pub fn summarise(summary: &Summary, names: &Names, rows: &[TrialRow]) -> Vec<Training> {
-    let mut sums: BTreeMap<(u32, u32), BTreeMap<u32, BTreeMap<u32, Tally>>> = BTreeMap::new();
+pub fn summarise(summary: &Summary, names: &Names, rows: &[TrialRow]) -> Vec<TrainingCurve> {
+    let mut curves: BTreeMap<(u32, u32), BTreeMap<u32, BTreeMap<u32, TrialSums>>> = BTreeMap::new();
     for row in rows.iter().filter(|row| !row.taught && row.steps > 0) {
         if summary.arm(&row.arm).is_none_or(|arm| arm.root != row.skill) {
             continue;
         }
-        let windows = sums.entry((Names::number(&names.arms, &row.arm), row.point)).or_default();
-        let tally = windows.entry(row.trial / WINDOW).or_default().entry(row.seed).or_default();
-        tally.seed = row.seed;
-        tally.trials += 1;
-        tally.steps += u64::from(row.steps);
-        tally.collisions += u64::from(row.collisions);
-        tally.reward += f64::from(row.reward);
-        tally.ratios += f64::from(row.reward) / f64::from(row.steps);
+        let windows = curves.entry((Names::number(&names.arms, &row.arm), row.point)).or_default();
+        windows.entry(row.trial / WINDOW).or_default().entry(row.seed).or_default().add(&row.into());
     }
-    let window = |(number, tallies): (u32, BTreeMap<u32, Tally>)| {
-        let tallies: Vec<Tally> = tallies.into_values().collect();
-        let longest = tallies.iter().map(|tally| tally.trials).max().unwrap_or(0);
-        Window { end: number * WINDOW + longest, tallies }
+    let window = |(number, by_seed): (u32, BTreeMap<u32, TrialSums>)| {
+        let longest = by_seed.values().map(|sums| sums.trials).max().unwrap_or(0);
+        TrainingWindow { end: number * WINDOW + longest, sums: by_seed.into_values().collect() }
     };
-    let training = |((arm, point), windows): ((u32, u32), BTreeMap<u32, BTreeMap<u32, Tally>>)| Training {
+    let curve = |((arm, point), windows): ((u32, u32), BTreeMap<_, _>)| TrainingCurve {
         arm: names.arms[arm as usize].clone(),
         point,
         windows: windows.into_iter().map(window).collect(),
     };
-    sums.into_iter().map(training).collect()
+    curves.into_iter().map(curve).collect()
 }
 
-/// Sum over sum of pairs over seeds, with its bootstrap interval.
-pub fn pooled(tallies: &[Tally], of: fn(&Tally) -> (f64, f64), resamples: usize) -> (f64, Interval) {
-    let pairs: Vec<(f64, f64)> = tallies.iter().map(of).collect();
-    (ratio(&pairs), bootstrap_ratio(&pairs, resamples))
+/// Sum over sum of a pair of numbers of each seed.
+pub fn pooled(sums: &[TrialSums], of: fn(&TrialSums) -> (f64, f64), resamples: usize) -> Estimate {
+    ratio_of(&sums.iter().map(of).collect::<Vec<_>>(), resamples)
 }

@@ -9,9 +9,9 @@ use std::path::Path;
 /// The file's name in a run folder.
 pub const FILE: &str = "failures.json";
 
-/// A learner that was frozen.
+/// A learner that diverged and was frozen: where it happened.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Failure {
+pub struct Divergence {
     /// The arm's name.
     pub arm: String,
     /// Sweep point, counted from 0.
@@ -110,7 +110,7 @@ impl TryFrom<Form> for Number {
 ///
 /// # Errors
 /// [`RecordError::Invalid`] if a value has no JSON form.
-pub fn write_failures(failures: &[Failure]) -> Result<Vec<u8>, RecordError> {
+pub fn write_failures(failures: &[Divergence]) -> Result<Vec<u8>, RecordError> {
     let invalid = |error: serde_json::Error| RecordError::invalid(FILE, error.to_string());
     Ok((serde_json::to_string_pretty(failures).map_err(invalid)? + "\n").into_bytes())
 }
@@ -119,15 +119,15 @@ pub fn write_failures(failures: &[Failure]) -> Result<Vec<u8>, RecordError> {
 ///
 /// # Errors
 /// [`RecordError::Damaged`] for anything but an array of failures.
-pub fn read_failures(bytes: &[u8], path: &Path) -> Result<Vec<Failure>, RecordError> {
+pub fn read_failures(bytes: &[u8], path: &Path) -> Result<Vec<Divergence>, RecordError> {
     serde_json::from_slice(bytes).map_err(|error| RecordError::damaged(path, error.to_string()))
 }
 
-/// The learners of a complete run that failed.
+/// The learners of a complete run that diverged.
 ///
 /// # Errors
 /// As [`read_failures`] and [`FinishedRun::content`].
-pub fn failures_of(run: &FinishedRun) -> Result<Vec<Failure>, RecordError> {
+pub fn failures_of(run: &FinishedRun) -> Result<Vec<Divergence>, RecordError> {
     match run.content(FILE)? {
         Some(bytes) => read_failures(&bytes, &run.dir().join(FILE)),
         None => Ok(Vec::new()),

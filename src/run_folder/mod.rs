@@ -22,7 +22,7 @@ pub mod trajectories;
 pub mod weights;
 
 pub use error::RecordError;
-pub use failures::Failure;
+pub use failures::Divergence;
 pub use finished::FinishedRun;
 pub use folder::{RunFolder, State};
 pub use manifest::{Manifest, Provenance};

@@ -2,7 +2,7 @@
 
 use super::value_iteration::{Planner, origin_of};
 use crate::backend::cpu::CPU;
-use crate::config::plan::Skill;
+use crate::config::plan::SkillPlan;
 use crate::env::reset::{start_pose, start_region};
 use crate::env::workgroup::{CohortData, Workgroup};
 use crate::layout::{
@@ -74,7 +74,7 @@ impl Demonstration {
 /// The teacher could not achieve the skill often enough.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "skill `{skill}`: the teacher achieved it in only {lessons} of {tries} demonstrations, and {wanted} lessons are wanted\nhint: widen `starts`, raise `max_steps`, or lower `teacher.bank`"
+    "skill `{skill}`: the teacher achieved it in only {lessons} of {tries} demonstrations, and {wanted} lessons are wanted\nhint: widen `starts`, raise `max_steps`, or lower `teacher.lessons`"
 )]
 pub struct TeacherError {
     /// The skill's name.
@@ -93,7 +93,7 @@ impl Teacher<'_> {
     ///
     /// # Errors
     /// Where too few demonstrations succeed.
-    pub fn bank(&self, skill: &Skill, wanted: u32) -> Result<Vec<u32>, TeacherError> {
+    pub fn bank(&self, skill: &SkillPlan, wanted: u32) -> Result<Vec<u32>, TeacherError> {
         let mut words = Vec::new();
         let mut lessons = 0;
         let mut tried = 0;

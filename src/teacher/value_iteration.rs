@@ -6,11 +6,12 @@
 use crate::backend::cpu::lanes::contact::body_after;
 use crate::backend::cpu::lanes::draws::place_of;
 use crate::backend::cpu::lanes::sonar::{ranges, rays};
-use crate::config::plan::{Action, Event, Noise, NoiseKind, Robot, Skill};
+use crate::config::plan::{Action, Event, Noise, SkillPlan};
 use crate::env::events::NOWHERE;
 use crate::env::motion::{BESIDE_LEFT, BESIDE_RIGHT, COLLISION, PASSED_DOOR};
 use crate::env::sonar::sonar_reading;
 use crate::env::workgroup::CohortData;
+use crate::layout::choices::NOISE_GAUSSIAN;
 use crate::layout::{Observation, RAYS};
 use crate::math::functions::sin_cos;
 use crate::world::{Pose, World};
@@ -58,8 +59,8 @@ pub struct Planner {
 pub struct Terms {
     /// Noise of the actuators.
     pub noise: Noise,
-    /// What counts as beside a wall.
-    pub robot: Robot,
+    /// Least and greatest reading beside a wall, whole inches.
+    pub beside: (u32, u32),
     /// The teacher's own discount factor.
     pub discount: f32,
     /// Cost of backing up, in reward units: keeps it from backing up where turning serves as well.
@@ -80,14 +81,14 @@ struct Outcome {
 
 impl Planner {
     /// Plans a skill. For one over skills it plans over all actions: the bound of every tree below it.
-    pub fn new(world: &World, shared: &CohortData, skill: &Skill, terms: &Terms) -> Self {
-        let Terms { noise, robot, discount, backward_cost, collision_cost, pitch } = *terms;
+    pub fn new(world: &World, shared: &CohortData, skill: &SkillPlan, terms: &Terms) -> Self {
+        let Terms { noise, beside, discount, backward_cost, collision_cost, pitch } = *terms;
         let columns = (world.size.x / pitch) as usize + 1;
         let rows = (world.size.y / pitch) as usize + 1;
         let free = (0..columns * rows)
             .map(|i| world.is_free(Vec2::new((i % columns) as f32 * pitch, (i / columns) as f32 * pitch)))
             .collect();
-        let origins = if skill.ends & PASSED_DOOR == 0 && skill.reward[Event::PassedDoor as usize] == 0.0 {
+        let origins = if skill.goal & PASSED_DOOR == 0 && skill.params.reward[Event::PassedDoor as usize] == 0.0 {
             1
         } else {
             world.rooms.len()
@@ -99,9 +100,9 @@ impl Planner {
             free,
             values: Vec::new(),
             children: skill.actions(),
-            reward: skill.reward,
-            ends: skill.ends,
-            beside: pays_beside(skill).then_some((robot.beside_near as u32, robot.beside_far as u32)),
+            reward: skill.params.reward,
+            ends: skill.goal,
+            beside: pays_beside(skill).then_some(beside),
             discount,
             backward_cost,
             collision_cost,
@@ -377,16 +378,16 @@ impl Between {
 /// Three-point quadrature of the actuators' slip: factors and weights.
 fn slips(noise: &Noise) -> [(f32, f32); SLIPS] {
     let (far, weight) = match noise.kind {
-        NoiseKind::Gaussian => (3.0_f32.sqrt(), 1.0 / 6.0),
-        NoiseKind::Uniform => (0.6_f32.sqrt(), 5.0 / 18.0),
+        NOISE_GAUSSIAN => (3.0_f32.sqrt(), 1.0 / 6.0),
+        _ => (0.6_f32.sqrt(), 5.0 / 18.0),
     };
     let reach = noise.actuator * far;
     [(1.0 - reach, weight), (1.0, 1.0 - 2.0 * weight), (1.0 + reach, weight)]
 }
 
-fn pays_beside(skill: &Skill) -> bool {
-    let paid = |event: Event| skill.reward[event as usize] != 0.0;
-    paid(Event::BesideRight) || paid(Event::BesideLeft) || skill.ends & (BESIDE_RIGHT | BESIDE_LEFT) != 0
+fn pays_beside(skill: &SkillPlan) -> bool {
+    let paid = |event: Event| skill.params.reward[event as usize] != 0.0;
+    paid(Event::BesideRight) || paid(Event::BesideLeft) || skill.goal & (BESIDE_RIGHT | BESIDE_LEFT) != 0
 }
 
 /// What the sonar shows at a pose, without noise; the other sensors show nothing.

@@ -14,7 +14,7 @@ pub(crate) const SWEEP: &str = "sweep";
 
 /// A text that values come from.
 #[derive(Debug)]
-pub(crate) enum Source {
+pub(crate) enum SourceText {
     /// A file.
     File { path: PathBuf, text: String },
     /// A command line argument, whole.
@@ -25,25 +25,25 @@ pub(crate) enum Source {
 
 /// Where a key or value was written.
 #[derive(Debug, Clone)]
-pub(crate) struct Origin {
-    pub(crate) source: Arc<Source>,
+pub(crate) struct SourceSpan {
+    pub(crate) source: Arc<SourceText>,
     pub(crate) span: Range<usize>,
 }
 
-impl Origin {
+impl SourceSpan {
     /// A complaint about this place.
     pub(crate) fn error(&self, message: impl Into<String>, hint: impl Into<String>) -> ConfigError {
         let place = match &*self.source {
-            Source::File { path, text } => Place::of_span(path, text, &self.span),
-            Source::Argument(argument) => Place::Argument(argument.clone()),
-            Source::Default(path) => Place::Argument(format!("the default of {path}")),
+            SourceText::File { path, text } => Place::of_span(path, text, &self.span),
+            SourceText::Argument(argument) => Place::Argument(argument.clone()),
+            SourceText::Default(path) => Place::Argument(format!("the default of {path}")),
         };
         ConfigError::new(place, message, hint)
     }
 
     /// Whether nobody wrote this: it is a default.
     pub(crate) fn is_default(&self) -> bool {
-        matches!(&*self.source, Source::Default(_))
+        matches!(&*self.source, SourceText::Default(_))
     }
 
     fn replace_default(&mut self, other: Self) {
@@ -55,9 +55,9 @@ impl Origin {
     /// A complaint about the whole text.
     pub(crate) fn file_error(&self, message: impl Into<String>, hint: impl Into<String>) -> ConfigError {
         let place = match &*self.source {
-            Source::File { path, .. } => Place::File(path.clone()),
-            Source::Argument(argument) => Place::Argument(argument.clone()),
-            Source::Default(path) => Place::Argument(format!("the default of {path}")),
+            SourceText::File { path, .. } => Place::File(path.clone()),
+            SourceText::Argument(argument) => Place::Argument(argument.clone()),
+            SourceText::Default(path) => Place::Argument(format!("the default of {path}")),
         };
         ConfigError::new(place, message, hint)
     }
@@ -67,7 +67,7 @@ impl Origin {
 #[derive(Debug, Clone)]
 pub(crate) struct Node {
     pub(crate) value: Value,
-    pub(crate) origin: Origin,
+    pub(crate) origin: SourceSpan,
 }
 
 /// A TOML value. Numbers are finite; dates are refused on reading.
@@ -78,24 +78,24 @@ pub(crate) enum Value {
     Float(f64),
     Flag(bool),
     List(Vec<Node>),
-    Table(Vec<Entry>),
+    Table(Vec<KeyValue>),
 }
 
 /// A key with its value; `origin` is the key's.
 #[derive(Debug, Clone)]
-pub(crate) struct Entry {
+pub(crate) struct KeyValue {
     pub(crate) key: String,
-    pub(crate) origin: Origin,
+    pub(crate) origin: SourceSpan,
     pub(crate) node: Node,
 }
 
 impl Node {
     /// Reads a whole file's text.
     pub(crate) fn parse(text: &str, path: &Path) -> Result<Self, ConfigError> {
-        let source = Arc::new(Source::File { path: path.to_owned(), text: text.to_owned() });
-        let whole = Origin { source: Arc::clone(&source), span: 0..0 };
+        let source = Arc::new(SourceText::File { path: path.to_owned(), text: text.to_owned() });
+        let whole = SourceSpan { source: Arc::clone(&source), span: 0..0 };
         let document = DeTable::parse(text).map_err(|error| {
-            let origin = Origin { source: Arc::clone(&source), span: error.span().unwrap_or(0..0) };
+            let origin = SourceSpan { source: Arc::clone(&source), span: error.span().unwrap_or(0..0) };
             let message = format!("not valid TOML: {}", error.message());
             origin.error(message, "text needs quotes, lists need commas; https://toml.io has the rules")
         })?;
@@ -103,13 +103,13 @@ impl Node {
     }
 
     /// Reads one value, all of which has the given place.
-    pub(crate) fn parse_value(text: &str, source: &Arc<Source>) -> Option<Result<Self, ConfigError>> {
+    pub(crate) fn parse_value(text: &str, source: &Arc<SourceText>) -> Option<Result<Self, ConfigError>> {
         let value = DeValue::parse(text).ok()?;
         Some(convert(value.get_ref(), value.span(), source))
     }
 
     /// An empty table.
-    pub(crate) fn empty(origin: Origin) -> Self {
+    pub(crate) fn empty(origin: SourceSpan) -> Self {
         Self { value: Value::Table(Vec::new()), origin }
     }
 
@@ -136,7 +136,7 @@ impl Node {
     }
 
     /// The key and value, if this is a table that has it.
-    pub(crate) fn entry(&self, key: &str) -> Option<&Entry> {
+    pub(crate) fn entry(&self, key: &str) -> Option<&KeyValue> {
         match &self.value {
             Value::Table(entries) => entries.iter().find(|entry| entry.key == key),
             _ => None,
@@ -152,7 +152,7 @@ impl Node {
     }
 
     /// Takes a key out of this table.
-    pub(crate) fn remove(&mut self, key: &str) -> Option<Entry> {
+    pub(crate) fn remove(&mut self, key: &str) -> Option<KeyValue> {
         let Value::Table(entries) = &mut self.value else { return None };
         let at = entries.iter().position(|entry| entry.key == key)?;
         Some(entries.remove(at))
@@ -163,7 +163,7 @@ impl Node {
         let Value::Table(entries) = &mut self.value else { return };
         match entries.iter_mut().find(|entry| entry.key == key) {
             Some(entry) => entry.node = node,
-            None => entries.push(Entry { key: key.to_owned(), origin: node.origin.clone(), node }),
+            None => entries.push(KeyValue { key: key.to_owned(), origin: node.origin.clone(), node }),
         }
     }
 
@@ -198,20 +198,20 @@ impl Node {
     }
 }
 
-fn table(entries: &DeTable<'_>, source: &Arc<Source>) -> Result<Value, ConfigError> {
+fn table(entries: &DeTable<'_>, source: &Arc<SourceText>) -> Result<Value, ConfigError> {
     let mut out = Vec::with_capacity(entries.len());
     for (key, value) in entries {
-        out.push(Entry {
+        out.push(KeyValue {
             key: key.get_ref().to_string(),
-            origin: Origin { source: Arc::clone(source), span: key.span() },
+            origin: SourceSpan { source: Arc::clone(source), span: key.span() },
             node: convert(value.get_ref(), value.span(), source)?,
         });
     }
     Ok(Value::Table(out))
 }
 
-fn convert(value: &DeValue<'_>, span: Range<usize>, source: &Arc<Source>) -> Result<Node, ConfigError> {
-    let origin = Origin { source: Arc::clone(source), span };
+fn convert(value: &DeValue<'_>, span: Range<usize>, source: &Arc<SourceText>) -> Result<Node, ConfigError> {
+    let origin = SourceSpan { source: Arc::clone(source), span };
     let value = match value {
         DeValue::String(text) => Value::Text(text.to_string()),
         DeValue::Integer(number) => match i64::from_str_radix(number.as_str(), number.radix()) {

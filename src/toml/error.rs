@@ -28,7 +28,7 @@ pub enum Place {
     },
     /// A file as a whole: it cannot be read, or lacks something.
     File(PathBuf),
-    /// Something typed on the command line, such as `--set learning.rate=x`.
+    /// Something typed on the command line, such as `--set learning.learning_rate=x`.
     Argument(String),
 }
 

@@ -2,8 +2,9 @@
 
 pub(crate) mod document;
 pub mod error;
+pub mod files;
 pub(crate) mod printer;
 pub(crate) mod reader;
-pub mod schema;
 
 pub use error::{ConfigError, Place};
+pub use files::{Files, MemoryFiles, OsFiles};

@@ -1,8 +1,10 @@
 //! Takes typed values out of a [`Node`] tree and refuses what nobody asked for.
 
-use super::document::{Entry, Node, Origin, Value};
+use super::document::{KeyValue, Node, SourceSpan, Value};
 use super::error::{ConfigError, list, nearest, suggest};
-use super::schema::{Allowed, Bounds, Key};
+use crate::layout::params::ParamRow;
+use crate::layout::schema::{Allowed, Bounds, KeyRow};
+use bytemuck::Pod;
 use std::cell::RefCell;
 
 /// Whether the text is a short name of letters, digits, `-` and `_`; such names need no quotes in TOML.
@@ -29,7 +31,7 @@ impl<'a> Item<'a> {
     }
 
     /// Where it was written.
-    pub(crate) fn origin(&self) -> &'a Origin {
+    pub(crate) fn origin(&self) -> &'a SourceSpan {
         &self.node.origin
     }
 
@@ -179,11 +181,11 @@ impl<'a> Item<'a> {
         Ok(out)
     }
 
-    /// The table; every key that is not asked for before [`Table::finish`] is refused there.
-    pub(crate) fn table(&self) -> Result<Table<'a>, ConfigError> {
+    /// The table; every key that is not asked for before [`TableReader::finish`] is refused there.
+    pub(crate) fn table(&self) -> Result<TableReader<'a>, ConfigError> {
         match &self.node.value {
             Value::Table(entries) => {
-                Ok(Table { name: self.name.clone(), node: self.node, entries, asked: RefCell::new(Vec::new()) })
+                Ok(TableReader { name: self.name.clone(), node: self.node, entries, asked: RefCell::new(Vec::new()) })
             }
             _ => Err(self.wrong("a table", "write its keys below a [header], or as { key = value }")),
         }
@@ -192,14 +194,14 @@ impl<'a> Item<'a> {
 
 /// A table that keeps track of the keys that were asked for.
 #[derive(Debug)]
-pub(crate) struct Table<'a> {
+pub(crate) struct TableReader<'a> {
     name: String,
     node: &'a Node,
-    entries: &'a [Entry],
+    entries: &'a [KeyValue],
     asked: RefCell<Vec<String>>,
 }
 
-impl<'a> Table<'a> {
+impl<'a> TableReader<'a> {
     /// The full dotted name of a key.
     pub(crate) fn name_of(&self, key: &str) -> String {
         if self.name.is_empty() { key.to_owned() } else { format!("{}.{key}", self.name) }
@@ -235,7 +237,7 @@ impl<'a> Table<'a> {
     }
 
     /// All keys with their values, all counted as asked for.
-    pub(crate) fn all(&self) -> Vec<(&'a Entry, Item<'a>)> {
+    pub(crate) fn all(&self) -> Vec<(&'a KeyValue, Item<'a>)> {
         let mut asked = self.asked.borrow_mut();
         let each = self.entries.iter().map(|entry| {
             asked.push(entry.key.clone());
@@ -258,52 +260,53 @@ impl<'a> Table<'a> {
     }
 }
 
-/// A table whose keys are in [`super::keys`], which holds their ranges. Defaults are in the tree already.
+/// A table whose keys have rows, which hold their ranges. Defaults are in the tree already.
 #[derive(Debug)]
-pub(crate) struct Section<'a>(pub(crate) Table<'a>);
+pub(crate) struct KeyedTable<'a>(pub(crate) TableReader<'a>);
 
-impl<'a> Section<'a> {
-    /// The value of a key that must be there.
-    pub(crate) fn required(&self, key: &Key, example: &str) -> Result<Item<'a>, ConfigError> {
+impl<'a> KeyedTable<'a> {
+    /// The value of a key that must be there; `example` shows one.
+    pub(crate) fn required(&self, key: &KeyRow, example: &str) -> Result<Item<'a>, ConfigError> {
         self.0.required(key.name(), example)
     }
 
-    fn get(&self, key: &Key) -> Result<Item<'a>, ConfigError> {
-        self.required(key, key.default.unwrap_or("..."))
+    /// The value of a key as the word that stands for it in a learner's memory: a number as the bits of an f32, a whole
+    /// number as it is, 0 or 1, the place of a word among those possible.
+    pub(crate) fn word(&self, key: &KeyRow) -> Result<u32, ConfigError> {
+        let item = self.required(key, key.default.unwrap_or("..."))?;
+        match key.allowed {
+            Allowed::Number(bounds) => item.number(bounds).map(f32::to_bits),
+            Allowed::Whole(low, high) => item.whole(low, high),
+            Allowed::Flag => item.flag().map(u32::from),
+            Allowed::Choice(words) => item.choice("possible values", words).map(|place| place as u32),
+            Allowed::Other(..) => Ok(0),
+        }
     }
 
     /// A number in the key's range.
-    pub(crate) fn number(&self, key: &Key) -> Result<f32, ConfigError> {
-        self.get(key)?.number(bounds(key))
+    pub(crate) fn number(&self, key: &KeyRow) -> Result<f32, ConfigError> {
+        self.word(key).map(f32::from_bits)
     }
 
-    /// A whole number in the key's range.
-    pub(crate) fn whole(&self, key: &Key) -> Result<u32, ConfigError> {
-        let (low, high) = match key.allowed {
-            Allowed::Whole(low, high) => (low, high),
-            _ => (0, u32::MAX),
-        };
-        self.get(key)?.whole(low, high)
+    /// A number in the key's range, or its default where it is left out of a file that no defaults lie under.
+    pub(crate) fn number_or_default(&self, key: &KeyRow) -> Result<f32, ConfigError> {
+        match (self.0.optional(key.name()), key.default.and_then(|text| text.parse().ok())) {
+            (None, Some(default)) => Ok(default),
+            _ => self.number(key),
+        }
     }
 
-    /// True or false.
-    pub(crate) fn flag(&self, key: &Key) -> Result<bool, ConfigError> {
-        self.get(key)?.flag()
-    }
-
-    /// The index of one of the key's words.
-    pub(crate) fn choice(&self, key: &Key) -> Result<usize, ConfigError> {
-        let words = match key.allowed {
-            Allowed::Choice(words) => words,
-            _ => &[],
-        };
-        self.get(key)?.choice("possible values", words)
-    }
-}
-
-fn bounds(key: &Key) -> Bounds {
-    match key.allowed {
-        Allowed::Number(bounds) => bounds,
-        _ => Bounds::between(-1e6, 1e6),
+    /// Reads the keys whose paths are `prefix` and a name into the fields of `out` that their rows name.
+    pub(crate) fn fill<T: Pod>(
+        &self,
+        prefix: &str,
+        rows: impl Iterator<Item = &'static ParamRow>,
+        out: &mut T,
+    ) -> Result<(), ConfigError> {
+        let words: &mut [u32] = bytemuck::cast_slice_mut(std::slice::from_mut(out));
+        for row in rows.filter(|row| row.key.path.strip_prefix(prefix) == Some(row.key.name())) {
+            words[row.word] = self.word(&row.key)?;
+        }
+        Ok(())
     }
 }

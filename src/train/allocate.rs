@@ -1,13 +1,11 @@
 //! From a plan to the memory of a cohort: every derived size is computed here, once.
 
-use crate::config::plan::{Arm, Child, Input, Optimiser, Skill, Threshold};
+use crate::config::plan::{ArmPlan, Child, Input, SkillPlan};
 use crate::layout::sensors::{GROUP_SONAR, GROUP_SONAR_COMPASS};
 use crate::layout::{
-    OPTIMISER_ADAM, OPTIMISER_ADAM_ROWS, OPTIMISER_SGD,
-    ELEMENTARY_STEP_WORDS, EVENTS, HyperParams, LANES, LESSON_HEADER_WORDS, LearnerState, MAX_CHILDREN, MAX_GROUPS, MAX_INPUTS,
-    MAX_ROWS, MAX_SKILLS, MAX_STARTS, STEP_WORDS, TRIAL_WORDS, SKILL_CODE, SONAR_CODES, SkillShape,
+    ELEMENTARY_STEP_WORDS, HyperParams, LANES, LESSON_HEADER_WORDS, LearnerState, MAX_CHILDREN, MAX_GROUPS, MAX_INPUTS,
+    MAX_ROWS, MAX_SKILLS, MAX_STARTS, SKILL_CODE, SONAR_CODES, STEP_WORDS, SkillShape, TRIAL_WORDS,
 };
-use crate::policy::applicability::ALWAYS;
 use crate::qnet::init::init;
 use crate::world::World;
 use crate::world::tables::Tables;
@@ -45,15 +43,15 @@ impl Shape {
     ///
     /// # Errors
     /// Where a skill exceeds a limit of the layout, or starts in a region without free space.
-    pub fn new(world: &World, arms: &[&Arm]) -> Result<Self, ShapeError> {
+    pub fn new(world: &World, arms: &[&ArmPlan]) -> Result<Self, ShapeError> {
         let mut shape =
             Self { skills: Vec::new(), tables: Tables::new(world), nets_stride: 0, lessons_stride: 0, rows_stride: 0 };
         for (number, skill) in arms[0].skills.iter().enumerate() {
             let siblings = || arms.iter().map(|arm| &arm.skills[number]);
-            let most = |size: fn(&Skill) -> u32| siblings().map(size).max().unwrap_or(0);
+            let most = |size: fn(&SkillPlan) -> u32| siblings().map(size).max().unwrap_or(0);
             let mut plan = plan_of(skill, world, &mut shape.tables)?;
             plan.watched = watched(&arms[0].skills, number);
-            plan.lesson_stride = lesson_stride(most(|skill| skill.max_steps), plan.record_words);
+            plan.lesson_stride = lesson_stride(most(|skill| skill.params.max_steps), plan.record_words);
             plan.memory_offset = shape.lessons_stride as u32;
             match skill.mirror {
                 Some(source) => {
@@ -67,10 +65,11 @@ impl Shape {
                 }
             }
             // What is never tried is never remembered.
-            if most(|skill| skill.trials) > 0 {
-                shape.lessons_stride += most(|skill| skill.learning.memory) as usize * plan.lesson_stride as usize;
+            if most(|skill| skill.params.trials) > 0 {
+                shape.lessons_stride +=
+                    most(|skill| skill.params.replay_capacity) as usize * plan.lesson_stride as usize;
             }
-            shape.rows_stride += most(|skill| skill.trials + skill.lessons) as usize * TRIAL_WORDS;
+            shape.rows_stride += most(|skill| skill.params.trials + skill.params.lessons) as usize * TRIAL_WORDS;
             shape.skills.push(plan);
         }
         // Every net can be read as one of `MAX_ROWS` rows: the last one too.
@@ -89,9 +88,10 @@ impl Shape {
     }
 
     /// A learner's params for each skill, its state before the first iteration, and its initial nets.
-    pub fn learner(&self, arm: &Arm, run_seed: u32, seed: u32) -> (Vec<HyperParams>, LearnerState, Vec<f32>) {
+    pub fn learner(&self, arm: &ArmPlan, run_seed: u32, seed: u32) -> (Vec<HyperParams>, LearnerState, Vec<f32>) {
         let mut nets = vec![0.0; self.nets_stride];
-        let params: Vec<HyperParams> = arm.skills.iter().map(|skill| params_of(skill, arm, run_seed, seed)).collect();
+        let own = |skill: &SkillPlan| HyperParams { run_seed, learner_seed: seed, ..skill.params };
+        let params: Vec<HyperParams> = arm.skills.iter().map(own).collect();
         for (number, plan) in self.skills.iter().enumerate().filter(|(number, _)| arm.skills[*number].mirror.is_none())
         {
             init(&mut nets, plan, number as u32, &params[number]);
@@ -106,7 +106,7 @@ pub fn lesson_stride(max_steps: u32, record_words: u32) -> u32 {
 }
 
 /// Bits of the skills below `root`, at any depth, on whose values some threshold in its tree depends.
-fn watched(skills: &[Skill], root: usize) -> u32 {
+fn watched(skills: &[SkillPlan], root: usize) -> u32 {
     let mut below = 1_u32 << root;
     let mut watched = 0;
     for (n, skill) in skills.iter().enumerate().rev().filter(|(n, _)| *n <= root && *n < MAX_SKILLS) {
@@ -122,7 +122,7 @@ fn watched(skills: &[Skill], root: usize) -> u32 {
     watched
 }
 
-fn plan_of(skill: &Skill, world: &World, tables: &mut Tables) -> Result<SkillShape, ShapeError> {
+fn plan_of(skill: &SkillPlan, world: &World, tables: &mut Tables) -> Result<SkillShape, ShapeError> {
     let refuse = |message: String, hint: &str| ShapeError { skill: skill.name.clone(), message, hint: hint.to_owned() };
     let rooms = world.rooms.len();
     let inputs = skill.width(rooms);
@@ -137,13 +137,13 @@ fn plan_of(skill: &Skill, world: &World, tables: &mut Tables) -> Result<SkillSha
     let mut plan = SkillShape::zeroed();
     plan.inputs = inputs;
     plan.children = skill.children.len() as u32;
-    (plan.nets, plan.outputs) = if skill.learning.shared_net { (1, plan.children) } else { (plan.children, 1) };
+    (plan.nets, plan.outputs) = if skill.params.shared_net == 1 { (1, plan.children) } else { (plan.children, 1) };
     plan.rows = inputs + plan.outputs + 2;
     plan.record_words = if skill.is_high() || recalls(skill) { STEP_WORDS } else { ELEMENTARY_STEP_WORDS } as u32;
     plan.mirrored = u32::from(skill.mirror.is_some());
     plan.groups = skill.inputs.len() as u32;
     plan.starts = skill.starts.len() as u32;
-    plan.ends = skill.ends;
+    plan.ends = skill.goal;
     let (mut first, mut bits) = (0, 0_u64);
     for (group, input) in skill.inputs.iter().enumerate() {
         plan.group_first[group] = first;
@@ -182,12 +182,12 @@ fn plan_of(skill: &Skill, world: &World, tables: &mut Tables) -> Result<SkillSha
         plan.start_share[number] = share;
         (plan.start_offset[number], plan.start_count[number]) = cells_of(region)?;
     }
-    (plan.tests_offset, plan.tests_count) = cells_of(&skill.tests)?;
+    (plan.tests_offset, plan.tests_count) = cells_of(&skill.eval_starts)?;
     Ok(plan)
 }
 
 /// Whether a skill's inputs stand in the second part of a record.
-fn recalls(skill: &Skill) -> bool {
+fn recalls(skill: &SkillPlan) -> bool {
     skill.inputs.iter().any(|input| input.is_recalled())
 }
 
@@ -201,79 +201,4 @@ fn sonar_table(input: Input) -> [f32; SONAR_CODES] {
         };
         code as f32
     })
-}
-
-fn params_of(skill: &Skill, arm: &Arm, run_seed: u32, seed: u32) -> HyperParams {
-    let (learning, robot) = (&skill.learning, &arm.robot);
-    let persistence = &skill.persistence;
-    let mut threshold = [ALWAYS; MAX_CHILDREN];
-    for (value, own) in threshold.iter_mut().zip(&skill.applicable) {
-        // A learned one is always exceeded until it is known.
-        if let Some(Threshold::Fixed(fixed)) = own {
-            *value = *fixed;
-        }
-    }
-    let (optimiser, rate, beta1, beta2, epsilon) = match learning.optimiser {
-        Optimiser::Sgd { rate, momentum } => (OPTIMISER_SGD, rate, momentum, 0.0, 1.0),
-        Optimiser::Adam { rows: false, rate, beta1, beta2, epsilon } => (OPTIMISER_ADAM, rate, beta1, beta2, epsilon),
-        Optimiser::Adam { rows: true, rate, beta1, beta2, epsilon } => {
-            (OPTIMISER_ADAM_ROWS, rate, beta1, beta2, epsilon)
-        }
-    };
-    let rise = learning.inverse_temperature_end - learning.inverse_temperature_start;
-    let mut reward = [0.0; EVENTS];
-    reward.copy_from_slice(&skill.reward);
-    HyperParams {
-        run_seed,
-        learner_seed: seed,
-        noise: arm.noise.into(),
-        hidden: learning.hidden,
-        unit_share: 1.0 / learning.hidden as f32,
-        init: learning.init,
-        gamma: learning.gamma,
-        lambda: learning.lambda,
-        optimiser,
-        rate,
-        rate_fall: (1.0 - learning.rate_end_share) / learning.rate_trials as f32,
-        rate_trials: learning.rate_trials,
-        beta1,
-        beta2,
-        epsilon2: epsilon * epsilon,
-        value_scale: 1.0 / learning.reward_scale,
-        target_limit: learning.target_limit,
-        inverse_temperature_start: learning.inverse_temperature_start,
-        inverse_temperature_slope: rise / learning.inverse_temperature_trials.max(1) as f32,
-        inverse_temperature_trials: learning.inverse_temperature_trials,
-        policy_threshold: learning.policy_threshold,
-        replays: learning.replays,
-        memory: learning.memory,
-        mean_age: learning.mean_age,
-        age_decay: -1.0 / learning.mean_age,
-        taught_passes: learning.taught_passes,
-        taught_replays: learning.taught_replays,
-        taught_always: u32::from(learning.taught_always),
-        timeout_terminal: u32::from(learning.timeout_terminal),
-        mask_blocked: u32::from(learning.mask_blocked),
-        mirror_replays: u32::from(learning.mirror_replays),
-        lessons: skill.lessons,
-        trials: skill.trials,
-        max_steps: skill.max_steps,
-        choice: skill.choice as u32,
-        persist_training: u32::from(persistence.training),
-        persist_tests: u32::from(persistence.tests),
-        applicability: u32::from(persistence.applicability),
-        interrupt: u32::from(persistence.interrupt),
-        decision_steps: persistence.decision_steps,
-        child_inverse_temperature: learning.child_inverse_temperature,
-        backup: learning.backup as u32,
-        advantage_scale: learning.advantage_scale,
-        inner_share: learning.inner_share,
-        light_trace: robot.light_trace,
-        door_trace: robot.door_trace,
-        range_mean: robot.range_mean,
-        beside_near: robot.beside_near as u32,
-        beside_far: robot.beside_far as u32,
-        threshold,
-        reward,
-    }
 }

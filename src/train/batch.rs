@@ -1,166 +1,154 @@
-//! Trains one cohort, from nothing, from stems, or from where it was saved.
+//! Trains one cohort, from nothing, from what was learned below the roots, or from where it was saved.
 //!
-//! Arms that differ in nothing below their roots share those skills: a [`Stem`] is trained once, and every arm's
-//! learner goes on from a copy. Its bytes are those of a learner that trained alone, for the random numbers come from
+//! Arms that differ in nothing below their roots share those skills: a [`Pretrained`] learner is trained once, and every
+//! arm's learner goes on from a copy. Its bytes are those of a learner that trained alone, for the random numbers come from
 //! seeds and counters that the arms have in common.
 
-use super::batch_group::{Group, LearnerId};
-use super::cohort_state::Standing;
-use super::divergence::failure_of;
-use super::result::{LearnerResult, TestResult};
-use super::thresholds::{Fit, fit};
-use super::train_loop::{Climb, Halt, Keeper, Taker};
+use super::batch_group::{BatchGroup, LearnerId};
+use super::callbacks::{Callbacks, Interrupted};
+use super::checkpoint::CohortState;
+use super::divergence::divergence_of;
+use super::pretraining::Pretrained;
+use super::result::LearnerResult;
+use super::thresholds::fit;
+use super::train_loop::{Evaluation, TrainLoop};
 use crate::backend::{Backend, Cohort, Stop};
 use crate::config::plan::{Child, Plan, Threshold};
-use crate::layout::{LANES, LearnerState, TRIAL_WORDS, SkillShape, PHASE_FAILED};
-use crate::run_folder::Failure;
-
-/// A learner that has learned everything below the root.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Stem {
-    /// Its seed, and the first of the arms that go on from it.
-    pub id: LearnerId,
-    pub(super) state: LearnerState,
-    pub(super) nets: Vec<f32>,
-    pub(super) rows: Vec<u32>,
-    pub(super) tests: Vec<TestResult>,
-    /// Of each skill below the root that has trials: how success goes with its value.
-    pub(super) fits: Vec<Option<Fit>>,
-    pub(super) failure: Option<Failure>,
-}
+use crate::layout::{LANES, PHASE_FAILED, SkillShape, TRIAL_WORDS};
+use crate::run_folder::Divergence;
 
 /// Trains the skills below the roots of some learners, or goes on with them from where they were saved.
 ///
 /// # Errors
-/// Where the backend fails, or the keeper ends it.
-pub fn train_stem(
+/// Where the backend fails, or the callbacks end it.
+pub fn pretrain(
     plan: &Plan,
-    group: &Group,
+    group: &BatchGroup,
     learners: &[LearnerId],
-    saved: Option<Standing>,
+    saved: Option<CohortState<'_>>,
     backend: &mut dyn Backend,
-    keeper: &mut dyn Keeper,
-) -> Result<Vec<Stem>, Halt> {
+    callbacks: &mut dyn Callbacks,
+) -> Result<Vec<Pretrained>, Interrupted> {
     let root = group.shape.skills.len() - 1;
     let mut cohort = group.cohort(plan, learners);
     let results = match saved {
-        Some(standing) => standing.restore(&mut cohort),
+        Some(state) => state.restore(&mut cohort),
         None => learners.iter().map(|id| LearnerResult::new(*id)).collect(),
     };
     backend.load(cohort)?;
-    let mut climb = Climb::new(plan, group, backend, keeper, results);
-    climb.climb(0..root)?;
-    climb.reach(Stop { skill: root as u32, trial: 0 })?;
-    let Climb { backend, results, .. } = climb;
+    let mut training = TrainLoop::new(plan, group, backend, callbacks, results);
+    training.train(0..root)?;
+    training.reach(Stop { skill: root as u32, trial: 0 })?;
+    let TrainLoop { backend, results, .. } = training;
     let cohort = backend.memory()?;
     let prefix = group.shape.skills[root].nets_offset as usize;
-    let stems = results.into_iter().enumerate().map(|(index, result)| {
-        let failure = failure_of(plan, cohort, index, result.id);
-        let learned = |skill: usize| failure.is_none() && learned(plan, result.id.arm, skill);
-        Stem {
+    let pretrained = results.into_iter().enumerate().map(|(index, result)| {
+        let divergence = divergence_of(plan, cohort, index, result.id);
+        let learned = |skill: usize| divergence.is_none() && learned(plan, result.id.arm, skill);
+        Pretrained {
             id: result.id,
             state: cohort.states[index],
             nets: cohort.nets[index * cohort.nets_stride..][..prefix].to_vec(),
             rows: rows_of(cohort, index).to_vec(),
             tests: result.tests,
             fits: (0..root).map(|skill| learned(skill).then(|| fit(cohort, index, skill))).collect(),
-            failure,
+            divergence,
         }
     });
-    Ok(stems.collect())
+    Ok(pretrained.collect())
 }
 
 /// Whether some threshold may be learned of this skill.
 fn learned(plan: &Plan, arm: usize, skill: usize) -> bool {
     let skill = &plan.arms[arm].skills[skill];
-    skill.trials > 0 && !skill.planned && skill.mirror.is_none() && skill.ends != 0
+    skill.params.trials > 0 && !skill.oracle && skill.mirror.is_none() && skill.goal != 0
 }
 
-/// Trains and tests the learners, from their stems where they have one or from where they were saved, and hands back
-/// all that they leave. Learners of one call have all a stem, or none of them has.
+/// Trains and tests the learners, from their pretrained ones where they have them or from where they were saved, and hands
+/// back all that they leave. Of the learners of one call all are pretrained, or none.
 ///
 /// # Errors
-/// Where the backend fails, or the keeper ends it.
-pub fn train<'stems>(
+/// Where the backend fails, or the callbacks end it.
+pub fn train<'a>(
     plan: &Plan,
-    group: &Group,
+    group: &BatchGroup,
     learners: &[LearnerId],
-    stem_of: &dyn Fn(LearnerId) -> Option<&'stems Stem>,
-    saved: Option<Standing>,
+    pretrained: &dyn Fn(LearnerId) -> Option<&'a Pretrained>,
+    saved: Option<CohortState<'_>>,
     backend: &mut dyn Backend,
-    keeper: &mut dyn Keeper,
-) -> Result<Vec<LearnerResult>, Halt> {
+    callbacks: &mut dyn Callbacks,
+) -> Result<Vec<LearnerResult>, Interrupted> {
     let mut results: Vec<LearnerResult> = learners.iter().map(|id| LearnerResult::new(*id)).collect();
     let skills = group.shape.skills.len();
     let mut cohort = group.cohort(plan, learners);
     let mut first = 0;
     for (index, result) in results.iter_mut().enumerate() {
-        if let Some(stem) = stem_of(result.id) {
-            graft(plan, &mut cohort, index, result, stem);
+        if let Some(from) = pretrained(result.id) {
+            go_on(plan, &mut cohort, index, result, from);
             first = skills - 1;
         }
     }
-    let trained = saved.as_ref().is_some_and(|standing| standing.trained);
-    if let Some(standing) = saved {
-        results = standing.restore(&mut cohort);
+    let trained = saved.as_ref().is_some_and(|state| state.trained);
+    if let Some(state) = saved {
+        results = state.restore(&mut cohort);
     }
     // The planner's tables are of the world that it knows.
     let altered = !plan.alterations.is_empty() && cohort.shared.skills.iter().all(|skill| skill.planned == 0);
-    let mut climb = Climb::new(plan, group, backend, keeper, results);
+    let mut training = TrainLoop::new(plan, group, backend, callbacks, results);
     if trained {
-        alter(&mut climb, &without_lessons(&cohort))?;
-        return Ok(climb.results);
+        alter(&mut training, &without_lessons(&cohort))?;
+        return Ok(training.results);
     }
-    climb.backend.load(cohort)?;
-    climb.climb(first..skills)?;
+    training.backend.load(cohort)?;
+    training.train(first..skills)?;
     // The last trial of the last skill is behind every learner: let them close.
-    climb.reach(Stop { skill: u32::MAX, trial: u32::MAX })?;
-    let cohort = climb.backend.memory()?;
-    for (index, result) in climb.results.iter_mut().enumerate() {
+    training.reach(Stop { skill: u32::MAX, trial: u32::MAX })?;
+    let cohort = training.backend.memory()?;
+    for (index, result) in training.results.iter_mut().enumerate() {
         close(plan, group, cohort, index, result);
     }
     if altered {
         let trained = without_lessons(cohort);
-        alter(&mut climb, &trained)?;
+        alter(&mut training, &trained)?;
     }
-    Ok(climb.results)
+    Ok(training.results)
 }
 
 /// Notes what a learner leaves after its last trial, or where it failed.
-fn close(plan: &Plan, group: &Group, cohort: &Cohort, index: usize, result: &mut LearnerResult) {
+fn close(plan: &Plan, group: &BatchGroup, cohort: &Cohort, index: usize, result: &mut LearnerResult) {
     let nets = &cohort.nets[index * cohort.nets_stride..][..cohort.nets_stride];
     result.rows = rows_of(cohort, index).to_vec();
     result.weights = pack(nets, &group.shape.skills);
     result.thresholds = cohort.params[(index + 1) * cohort.skills - 1].threshold.to_vec();
     result.updates = cohort.states[index].updates;
-    // One that failed in its stem has its lesson no longer.
-    if result.failure.is_none() {
-        result.failure = failure_of(plan, cohort, index, result.id);
+    // One that diverged below its root has its lesson no longer.
+    if result.divergence.is_none() {
+        result.divergence = divergence_of(plan, cohort, index, result.id);
     }
 }
 
-/// Puts a stem into learner `index` of a cohort that is still to begin.
-fn graft(plan: &Plan, cohort: &mut Cohort, index: usize, result: &mut LearnerResult, stem: &Stem) {
-    cohort.states[index] = stem.state;
-    cohort.nets[index * cohort.nets_stride..][..stem.nets.len()].copy_from_slice(&stem.nets);
-    cohort.rows[index * cohort.rows_stride..][..stem.rows.len()].copy_from_slice(&stem.rows);
-    result.tests.clone_from(&stem.tests);
+/// Makes learner `index` of a cohort that is still to begin a copy of a pretrained one.
+fn go_on(plan: &Plan, cohort: &mut Cohort, index: usize, result: &mut LearnerResult, from: &Pretrained) {
+    cohort.states[index] = from.state;
+    cohort.nets[index * cohort.nets_stride..][..from.nets.len()].copy_from_slice(&from.nets);
+    cohort.rows[index * cohort.rows_stride..][..from.rows.len()].copy_from_slice(&from.rows);
+    result.tests.clone_from(&from.tests);
     let arm = &plan.arms[result.id.arm];
-    let own = |failure: Failure| Failure { arm: arm.name.clone(), point: arm.point, ..failure };
-    result.failure = stem.failure.clone().map(own);
+    let own = |divergence: Divergence| Divergence { arm: arm.name.clone(), point: arm.point, ..divergence };
+    result.divergence = from.divergence.clone().map(own);
     let root = &arm.skills[cohort.skills - 1];
     let params = &mut cohort.params[(index + 1) * cohort.skills - 1];
     for (child, threshold) in root.applicable.iter().enumerate() {
         let Child::Skill(skill) = root.children[child] else { continue };
-        if let (Some(Threshold::Learned(probability)), Some(fit)) = (threshold, stem.fits[skill]) {
+        if let (Some(Threshold::Learned(probability)), Some(fit)) = (threshold, from.fits[skill]) {
             params.threshold[child] = fit.threshold(*probability);
         }
     }
 }
 
 /// Tests what was learned under each of the plan's alterations.
-fn alter(climb: &mut Climb<'_>, trained: &Cohort) -> Result<(), Halt> {
-    let (plan, group) = (climb.plan, climb.group);
+fn alter(training: &mut TrainLoop<'_>, trained: &Cohort) -> Result<(), Interrupted> {
+    let (plan, group) = (training.plan, training.group);
     let root = group.shape.skills.len() - 1;
     let arm = &plan.arms[group.arms[0]];
     let wanted: Vec<bool> = trained.states.iter().map(|state| state.phase != PHASE_FAILED).collect();
@@ -169,17 +157,17 @@ fn alter(climb: &mut Climb<'_>, trained: &Cohort) -> Result<(), Halt> {
         cohort.shared.clone_from(shared);
         for params in &mut cohort.params {
             let Some(noise) = alteration.noise else { continue };
-            params.noise = noise.into();
+            params.noise = noise;
         }
-        climb.backend.load(cohort)?;
-        let taker = Taker {
+        training.backend.load(cohort)?;
+        let test = Evaluation {
             skill: root as u32,
             // The same number as the last test in the world of training: the same random, as far as they go.
-            trials: plan.arms[climb.results[0].id.arm].skills[root].trials,
+            trials: plan.arms[training.results[0].id.arm].skills[root].params.trials,
             variant: number as u32 + 1,
             world: &plan.worlds[alteration.world.unwrap_or(arm.world)].world,
         };
-        climb.test(&taker, &wanted, &trained.states, Some(trained))?;
+        training.evaluate(&test, &wanted, &trained.states, Some(trained))?;
     }
     Ok(())
 }

@@ -1,18 +1,19 @@
 //! Arms that can train in one cohort: their skills agree in all but numbers, and one teacher serves them.
 
-use super::fingerprint::{classes, of_tasks};
 use crate::backend::Cohort;
-use crate::config::plan::{Action, Arm, Event, Plan, Skill};
+use crate::config::plan::{ArmPlan, Plan, SkillPlan, Threshold};
 use crate::env::segments::SegmentGrid;
 use crate::env::workgroup::CohortData;
-use crate::layout::{ELEMENTARY_STEP_WORDS, SkillShape};
+use crate::layout::{ELEMENTARY_STEP_WORDS, HyperParams, SkillShape};
 use crate::teacher::demonstrations::{Demonstration, Teacher, TeacherError, teacher_params};
 use crate::teacher::value_iteration::{PITCH, Planner, Terms};
 use crate::train::allocate::{Shape, ShapeError};
+use serde::{Deserialize, Serialize};
+use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
 /// One learner of the experiment.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct LearnerId {
     /// Index of the arm in the plan.
     pub arm: usize,
@@ -22,7 +23,7 @@ pub struct LearnerId {
 
 /// Arms with one shape and one teacher, and what they share.
 #[derive(Debug)]
-pub struct Group {
+pub struct BatchGroup {
     /// Indices of the arms in the plan, ascending.
     pub arms: Vec<usize>,
     /// Sizes and shapes.
@@ -50,91 +51,89 @@ pub enum SetupError {
 ///
 /// # Errors
 /// Where a skill does not fit, or its teacher fails.
-pub fn groups(plan: &Plan) -> Result<Vec<Group>, SetupError> {
-    let arm = |index: usize| &plan.arms[index];
-    let members = classes(plan.arms.len(), |index| of_tasks(arm(index)), |a, b| alike(arm(a), arm(b)));
-    let mut solved = Solved::default();
-    members.into_iter().map(|arms| Group::new(plan, arms, &mut solved)).collect()
+pub fn groups(plan: &Plan) -> Result<Vec<BatchGroup>, SetupError> {
+    let mut planners = Planners::default();
+    classes(&plan.arms, |arm| structure(plan, arm))
+        .into_iter()
+        .map(|arms| BatchGroup::new(plan, arms, &mut planners))
+        .collect()
 }
 
-/// Whether two arms differ in nothing but per-learner numbers that the teacher does not see.
-pub(super) fn alike(a: &Arm, b: &Arm) -> bool {
-    let bare = |skill: &Skill, like: &Skill| {
-        let mut bare = Skill {
-            learning: like.learning.clone(),
-            lessons: like.lessons,
-            trials: like.trials,
-            tested_at: like.tested_at.clone(),
-            choice: like.choice,
-            persistence: like.persistence,
-            ..skill.clone()
+/// The group that an arm belongs to.
+pub fn group_of(groups: &[BatchGroup], arm: usize) -> &BatchGroup {
+    &groups[group_index(groups, arm)]
+}
+
+/// Index of the group that an arm belongs to.
+pub fn group_index(groups: &[BatchGroup], arm: usize) -> usize {
+    groups.iter().position(|group| group.arms.binary_search(&arm).is_ok()).unwrap_or(0)
+}
+
+/// Sorts arms into classes with one key each, in the order in which each class shows up first: their indices.
+pub(super) fn classes(arms: &[ArmPlan], key: impl Fn(&ArmPlan) -> String) -> Vec<Vec<usize>> {
+    let mut classes: Vec<Vec<usize>> = Vec::new();
+    let mut known: HashMap<String, usize> = HashMap::new();
+    for (index, arm) in arms.iter().enumerate() {
+        let class = *known.entry(key(arm)).or_insert(classes.len());
+        if class == classes.len() {
+            classes.push(Vec::new());
+        }
+        classes[class].push(index);
+    }
+    classes
+}
+
+/// Text that is equal for arms that differ in nothing but numbers of single learners, which the teacher does not see: all
+/// of the arm with these numbers made the same, so that whatever is new in an arm counts until it is made so here.
+pub(super) fn structure(plan: &Plan, arm: &ArmPlan) -> String {
+    let any = &plan.arms[0].skills[0];
+    let bare = |skill: &SkillPlan| {
+        let applicable = skill.applicable.iter().map(|threshold| threshold.map(|_| Threshold::Fixed(0.0))).collect();
+        let own = &skill.params;
+        let params = HyperParams {
+            noise: own.noise,
+            light_decay: own.light_decay,
+            door_decay: own.door_decay,
+            range_decay: own.range_decay,
+            beside_near: own.beside_near,
+            beside_far: own.beside_far,
+            shared_net: own.shared_net,
+            max_steps: own.max_steps,
+            reward: own.reward,
+            ..any.params
         };
-        bare.learning.shared_net = skill.learning.shared_net;
-        for (own, other) in bare.applicable.iter_mut().zip(&like.applicable) {
-            *own = if own.is_some() && other.is_some() { *other } else { *own };
-        }
-        bare
+        SkillPlan { params, applicable, eval_at: Vec::new(), ..skill.clone() }
     };
-    (a.world, a.noise, a.robot, a.teacher) == (b.world, b.noise, b.robot, b.teacher)
-        && a.skills.len() == b.skills.len()
-        && a.skills.iter().zip(&b.skills).all(|(a, b)| *a == bare(b, a))
+    let skills: Vec<SkillPlan> = arm.skills.iter().map(bare).collect();
+    format!("{:?}", ArmPlan { name: String::new(), point: 0, skills, ..arm.clone() })
 }
 
-/// A task as the planner sees it.
-#[derive(Debug, Clone, PartialEq)]
-struct Task {
-    world: usize,
-    terms: Terms,
-    reward: [f32; Event::ALL.len()],
-    ends: u32,
-    actions: Vec<Action>,
-}
-
-/// Planners, and which of their tests have been made: arms share most tasks.
+/// Planners, and which of their tests have been made, by the text of the task: arms share most tasks.
 #[derive(Debug, Default)]
-struct Solved {
-    planners: Vec<(Task, Rc<Planner>)>,
-    tested: Vec<(Task, String, u32, u32)>,
+struct Planners {
+    known: HashMap<String, Rc<Planner>>,
+    tested: HashSet<String>,
 }
 
-impl Solved {
-    fn planner(&mut self, task: &Task, make: impl FnOnce() -> Planner) -> Rc<Planner> {
-        if let Some((_, planner)) = self.planners.iter().find(|(known, _)| known == task) {
-            return Rc::clone(planner);
-        }
-        let planner = Rc::new(make());
-        self.planners.push((task.clone(), Rc::clone(&planner)));
-        planner
-    }
-
-    /// Whether these tests are still to be made; from now on they are not.
-    fn claim(&mut self, task: &Task, skill: &Skill, episodes: u32) -> bool {
-        let test = (task.clone(), skill.tests.clone(), skill.max_steps, episodes);
-        let open = !self.tested.contains(&test);
-        if open {
-            self.tested.push(test);
-        }
-        open
-    }
-}
-
-impl Group {
-    fn new(plan: &Plan, arms: Vec<usize>, solved: &mut Solved) -> Result<Self, SetupError> {
-        let members: Vec<&Arm> = arms.iter().map(|arm| &plan.arms[*arm]).collect();
+impl BatchGroup {
+    fn new(plan: &Plan, arms: Vec<usize>, planners: &mut Planners) -> Result<Self, SetupError> {
+        let members: Vec<&ArmPlan> = arms.iter().map(|arm| &plan.arms[*arm]).collect();
         let first = members[0];
         let world = plan.world_of(first);
         let (shape, mut shared) = lay_out(&members, world)?;
         let mut bounds = Vec::new();
         let (params, ..) = shape.learner(first, plan.run_seed, 0);
         for (number, skill) in first.skills.iter().enumerate() {
-            let taught = members.iter().any(|arm| arm.skills[number].lessons > 0);
-            let task = task_of(first, skill);
+            let taught = members.iter().any(|arm| arm.skills[number].params.lessons > 0);
+            let terms = terms_of(first);
+            let task = format!("{:?}", (first.world, &terms, skill.params.reward, skill.goal, skill.actions()));
             // A mirror image has nothing of its own to plan.
             if skill.mirror.is_some() {
                 bounds.push(None);
                 continue;
             }
-            let planner = solved.planner(&task, || Planner::new(world, &shared, skill, &task.terms));
+            let make = || Rc::new(Planner::new(world, &shared, skill, &terms));
+            let planner = Rc::clone(planners.known.entry(task.clone()).or_insert_with(make));
             let driven = driven(&shared.skills[number], skill);
             let teacher = Teacher {
                 shared: &shared,
@@ -143,14 +142,13 @@ impl Group {
                 params: &teacher_params(&params[number]),
                 number: number as u32,
             };
-            let bank = if taught { teacher.bank(skill, first.teacher.bank)? } else { Vec::new() };
-            bounds.push(
-                solved.claim(&task, skill, first.teacher.episodes).then(|| teacher.tests(first.teacher.episodes)),
-            );
-            let table = skill.planned.then(|| planner.table(&shared, params[number].value_scale));
+            let bank = if taught { teacher.bank(skill, first.teacher.lessons)? } else { Vec::new() };
+            let test = format!("{:?}", (task, &skill.eval_starts, skill.params.max_steps, first.teacher.eval_episodes));
+            bounds.push(planners.tested.insert(test).then(|| teacher.tests(first.teacher.eval_episodes)));
+            let table = skill.oracle.then(|| planner.table(&shared, params[number].value_scale));
             let own = &mut shared.skills[number];
             own.bank_offset = shared.bank.len() as u32;
-            own.bank_lessons = if taught { first.teacher.bank } else { 0 };
+            own.bank_lessons = if taught { first.teacher.lessons } else { 0 };
             if let Some(table) = table {
                 own.planned = shared.tables.len() as u32;
                 shared.tables.extend(table);
@@ -201,7 +199,7 @@ impl Group {
     }
 }
 
-fn lay_out(members: &[&Arm], world: &crate::world::World) -> Result<(Shape, CohortData), ShapeError> {
+fn lay_out(members: &[&ArmPlan], world: &crate::world::World) -> Result<(Shape, CohortData), ShapeError> {
     let mut shape = Shape::new(world, members)?;
     let shared = CohortData {
         floor: SegmentGrid::new(&shape.tables.plan, &shape.tables.words),
@@ -213,10 +211,10 @@ fn lay_out(members: &[&Arm], world: &crate::world::World) -> Result<(Shape, Coho
 }
 
 /// What the teacher plans an arm's skills with.
-pub fn terms_of(arm: &Arm) -> Terms {
+pub fn terms_of(arm: &ArmPlan) -> Terms {
     Terms {
         noise: arm.noise,
-        robot: arm.robot,
+        beside: arm.skills.last().map_or((0, 0), |root| (root.params.beside_near, root.params.beside_far)),
         discount: arm.teacher.discount,
         backward_cost: arm.teacher.backward_cost,
         collision_cost: arm.teacher.collision_cost,
@@ -224,13 +222,8 @@ pub fn terms_of(arm: &Arm) -> Terms {
     }
 }
 
-fn task_of(arm: &Arm, skill: &Skill) -> Task {
-    let terms = terms_of(arm);
-    Task { world: arm.world, terms, reward: skill.reward, ends: skill.ends, actions: skill.actions() }
-}
-
 /// A skill's shape as the planner drives it: over actions.
-fn driven(plan: &SkillShape, skill: &Skill) -> SkillShape {
+fn driven(plan: &SkillShape, skill: &SkillPlan) -> SkillShape {
     let mut driven = *plan;
     if skill.is_high() {
         let actions = skill.actions();

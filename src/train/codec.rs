@@ -1,162 +1,181 @@
-//! Little-endian words, to and from the files that a run keeps for itself.
+//! The bytes of what a run keeps for itself, parts and checkpoints: postcard, compressed by Snappy.
+//!
+//! Numbers in long rows are bytes as they lie in memory, little-endian on every machine that we run on. Most lessons end
+//! long before the step limit: Snappy makes little of the zeros behind them.
 
-use std::io::{self, Write};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use snap::{read::FrameDecoder, write::FrameEncoder};
+use std::io::{self, Read, Write};
 
 /// What a run keeps for itself does not hold what it should.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("it does not hold whole results of this experiment")]
 pub struct PartError;
 
-/// Fewest zeros in a row that are counted and not written.
-const GAP: usize = 4;
-
-/// The words of a file.
-///
-/// # Errors
-/// Where a word is cut.
-pub fn words_of(bytes: &[u8]) -> Result<Vec<u32>, PartError> {
-    let (chunks, rest) = bytes.as_chunks::<4>();
-    if rest.is_empty() { Ok(chunks.iter().map(|chunk| u32::from_le_bytes(*chunk)).collect()) } else { Err(PartError) }
-}
-
-/// Writes words.
+/// Writes a value.
 ///
 /// # Errors
 /// Those of `out`.
-pub fn put(out: &mut dyn Write, words: &[u32]) -> io::Result<()> {
-    let mut bytes = Vec::with_capacity(4096);
-    for chunk in words.chunks(1024) {
-        bytes.clear();
-        bytes.extend(chunk.iter().flat_map(|word| word.to_le_bytes()));
-        out.write_all(&bytes)?;
+pub fn write(value: &impl Serialize, out: &mut dyn Write) -> io::Result<()> {
+    let mut out = Remembering { inner: FrameEncoder::new(out), error: None };
+    match postcard::to_io(value, &mut out) {
+        Ok(_) => out.inner.flush(),
+        Err(error) => Err(out.error.take().unwrap_or_else(|| io::Error::other(error))),
     }
-    Ok(())
 }
 
-/// Writes words among which there are many zeros: in turn a number of zeros, a number of words, and the words.
+/// Reads a value back.
 ///
 /// # Errors
-/// Those of `out`.
-pub fn put_sparse(out: &mut dyn Write, words: &[u32]) -> io::Result<()> {
-    let mut rest = words;
-    while !rest.is_empty() {
-        let zeros = rest.iter().position(|word| *word != 0).unwrap_or(rest.len());
-        rest = &rest[zeros..];
-        let count = rest.windows(GAP).position(|words| words == [0; GAP]).unwrap_or(rest.len());
-        put(out, &[zeros as u32, count as u32])?;
-        put(out, &rest[..count])?;
-        rest = &rest[count..];
+/// Where the bytes end early, go on, or are not those of such a value.
+pub fn read<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, PartError> {
+    let mut plain = Vec::new();
+    FrameDecoder::new(bytes).read_to_end(&mut plain).map_err(|_| PartError)?;
+    match postcard::take_from_bytes(&plain) {
+        Ok((value, [])) => Ok(value),
+        _ => Err(PartError),
     }
-    Ok(())
 }
 
-/// Reads words one after another.
-#[derive(Debug)]
-pub struct Reader<'a> {
-    words: &'a [u32],
+/// Keeps the error of a writer, of which postcard tells nothing.
+struct Remembering<W> {
+    inner: W,
+    error: Option<io::Error>,
 }
 
-impl<'a> Reader<'a> {
-    /// From the first word on.
-    pub fn new(words: &'a [u32]) -> Self {
-        Self { words }
+impl<W: Write> Write for Remembering<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.inner.write(bytes).inspect_err(|error| {
+            // An interrupted call is repeated.
+            if error.kind() != io::ErrorKind::Interrupted {
+                self.error =
+                    Some(error.raw_os_error().map_or_else(|| error.kind().into(), io::Error::from_raw_os_error));
+            }
+        })
     }
 
-    /// The next `count` words.
-    ///
-    /// # Errors
-    /// Where there are fewer.
-    pub fn slice(&mut self, count: usize) -> Result<&'a [u32], PartError> {
-        let (head, tail) = self.words.split_at_checked(count).ok_or(PartError)?;
-        self.words = tail;
-        Ok(head)
+    fn flush(&mut self) -> io::Result<()> {
+        self.inner.flush()
+    }
+}
+
+/// Plain old data in a row, as bytes: for `#[serde(with = "pod")]`.
+pub(super) mod pod {
+    use bytemuck::Pod;
+    use serde::de::Error;
+    use serde::{Deserialize, Deserializer, Serializer};
+    use std::ops::Deref;
+
+    pub(in crate::train) fn serialize<T: Pod, S: Serializer>(
+        values: &impl Deref<Target = [T]>,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        serializer.serialize_bytes(bytemuck::cast_slice(values))
     }
 
-    /// The next words, as many as are asked for.
-    ///
-    /// # Errors
-    /// Where there are fewer.
-    pub fn words<const N: usize>(&mut self) -> Result<[u32; N], PartError> {
-        self.slice(N)?.try_into().map_err(|_| PartError)
-    }
-
-    /// An f64.
-    ///
-    /// # Errors
-    /// Where the words end.
-    pub fn double(&mut self) -> Result<f64, PartError> {
-        let [low, high] = self.words()?;
-        Ok(f64::from_bits(u64::from(low) | u64::from(high) << 32))
-    }
-
-    /// Some f32, their number first.
-    ///
-    /// # Errors
-    /// Where the words end.
-    pub fn singles(&mut self) -> Result<Vec<f32>, PartError> {
-        Ok(self.list()?.iter().map(|bits| f32::from_bits(*bits)).collect())
-    }
-
-    /// Some words, their number first.
-    ///
-    /// # Errors
-    /// Where the words end.
-    pub fn list(&mut self) -> Result<&'a [u32], PartError> {
-        let [count] = self.words()?;
-        self.slice(count as usize)
-    }
-
-    /// As many words as `into` has, as [`put_sparse`] wrote them.
-    ///
-    /// # Errors
-    /// Where they are more or fewer.
-    pub fn sparse(&mut self, into: &mut [u32]) -> Result<(), PartError> {
-        let mut rest = into;
-        while !rest.is_empty() {
-            let [zeros, count] = self.words()?;
-            let (gap, tail) = rest.split_at_mut_checked(zeros as usize).ok_or(PartError)?;
-            gap.fill(0);
-            let (words, tail) = tail.split_at_mut_checked(count as usize).ok_or(PartError)?;
-            words.copy_from_slice(self.slice(count as usize)?);
-            rest = tail;
+    pub(in crate::train) fn deserialize<'de, T: Pod, V, D>(deserializer: D) -> Result<V, D::Error>
+    where
+        V: Deref<Target = [T]> + From<Vec<T>>,
+        D: Deserializer<'de>,
+    {
+        let bytes = <&[u8]>::deserialize(deserializer)?;
+        if !bytes.len().is_multiple_of(size_of::<T>()) {
+            return Err(D::Error::custom("a value is cut"));
         }
-        Ok(())
+        let mut values = vec![T::zeroed(); bytes.len() / size_of::<T>()];
+        bytemuck::cast_slice_mut(&mut values).copy_from_slice(bytes);
+        Ok(values.into())
+    }
+}
+
+/// One piece of plain old data, as bytes: for `#[serde(with = "record")]`.
+pub(super) mod record {
+    use bytemuck::Pod;
+    use serde::de::Error;
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    pub(in crate::train) fn serialize<S: Serializer>(value: &impl Pod, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_bytes(bytemuck::bytes_of(value))
     }
 
-    /// The end.
-    ///
-    /// # Errors
-    /// Where there are more words.
-    pub fn end(&self) -> Result<(), PartError> {
-        if self.words.is_empty() { Ok(()) } else { Err(PartError) }
+    pub(in crate::train) fn deserialize<'de, T: Pod, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
+        bytemuck::try_pod_read_unaligned(<&[u8]>::deserialize(deserializer)?).map_err(D::Error::custom)
+    }
+}
+
+/// What has JSON of its own, as that text: for `#[serde(with = "json")]`.
+pub(super) mod json {
+    use serde::de::{DeserializeOwned, Error as _};
+    use serde::ser::Error as _;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub(in crate::train) fn serialize<S: Serializer>(value: &impl Serialize, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(&serde_json::to_string(value).map_err(S::Error::custom)?)
+    }
+
+    pub(in crate::train) fn deserialize<'de, T: DeserializeOwned, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<T, D::Error> {
+        serde_json::from_str(<&str>::deserialize(deserializer)?).map_err(D::Error::custom)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use serde::Deserialize;
+
+    #[derive(Debug, PartialEq, Serialize, Deserialize)]
+    struct Example {
+        #[serde(with = "pod")]
+        words: Vec<u32>,
+        #[serde(with = "json")]
+        names: Vec<String>,
+        number: Option<u64>,
+    }
+
+    fn written(value: &impl Serialize) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        write(value, &mut bytes).unwrap();
+        bytes
+    }
 
     #[test]
-    fn words_with_gaps_come_back() {
-        let cases: [&[u32]; 6] =
-            [&[], &[0; 9], &[7], &[0, 0, 0, 0, 5, 0, 0, 6, 0, 0, 0, 0], &[1, 0, 0, 0, 2], &[1, 0, 0, 0, 0, 2]];
-        for words in cases {
-            let mut bytes = Vec::new();
-            put_sparse(&mut bytes, words).unwrap();
-            let written = words_of(&bytes).unwrap();
-            let mut found = vec![9; words.len()];
-            let mut reader = Reader::new(&written);
-            reader.sparse(&mut found).unwrap();
-            assert_eq!((found.as_slice(), reader.end()), (words, Ok(())));
-            assert!(words.is_empty() || Reader::new(&written).sparse(&mut vec![0; words.len() + 1]).is_err());
-            assert!(
-                words.is_empty()
-                    || Reader::new(&written).sparse(&mut vec![0; words.len() - 1]).is_err()
-                    || words.len() == 1
-            );
+    fn values_come_back_and_every_cut_is_seen() {
+        let value = Example { words: vec![0, 0, 7, u32::MAX], names: vec!["räume".to_owned()], number: Some(1 << 40) };
+        let bytes = written(&value);
+        assert_eq!(read::<Example>(&bytes), Ok(value));
+        for length in 0..bytes.len() {
+            assert_eq!(read::<Example>(&bytes[..length]), Err(PartError), "{length} bytes");
         }
-        let mut bytes = Vec::new();
-        put_sparse(&mut bytes, &[0; 1_000_000]).unwrap();
-        assert_eq!(bytes.len(), 8);
+        assert_eq!(read::<Example>(&[bytes, vec![0]].concat()), Err(PartError));
+        // Three bytes are no word.
+        assert_eq!(read::<Example>(&written(&(&b"abc"[..].to_vec(), "[]", None::<u64>))), Err(PartError));
+    }
+
+    #[test]
+    fn zeros_take_little_space() {
+        let value = Example { words: vec![0; 1_000_000], names: Vec::new(), number: None };
+        let bytes = written(&value).len();
+        assert!(bytes < 200_000, "{bytes}");
+    }
+
+    struct Full;
+
+    impl Write for Full {
+        fn write(&mut self, _: &[u8]) -> io::Result<usize> {
+            Err(io::ErrorKind::StorageFull.into())
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn a_full_disk_is_told() {
+        let value = Example { words: (0..1_000_000).collect(), names: Vec::new(), number: None };
+        assert_eq!(write(&value, &mut Full).unwrap_err().kind(), io::ErrorKind::StorageFull);
     }
 }

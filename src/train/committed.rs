@@ -1,8 +1,7 @@
 //! The committed parts of a run: which learners are finished, and what they leave, read when it is asked for.
 
-use super::batch_group::{Group, LearnerId};
+use super::batch_group::{BatchGroup, LearnerId};
 use super::codec::PartError;
-use super::pretraining::group_of;
 use super::result::{LearnerResult, decode, encode};
 use super::validate::{is_complete, is_known};
 use crate::config::plan::Plan;
@@ -28,12 +27,12 @@ impl Parts {
     ///
     /// # Errors
     /// [`RecordError::Damaged`], [`RecordError::OtherProgram`], [`RecordError::Unreadable`].
-    pub fn read(plan: &Plan, groups: &[Group], folder: &RunFolder) -> Result<Self, RecordError> {
+    pub fn read(plan: &Plan, groups: &[BatchGroup], folder: &RunFolder) -> Result<Self, RecordError> {
         let mut parts = Self::default();
         for name in folder.parts()? {
             let mut results = load(folder, &name)?;
             results.retain(|id, _| is_known(plan, *id));
-            let complete = |result: &LearnerResult| is_complete(plan, group_of(groups, result.id.arm), result);
+            let complete = |result: &LearnerResult| is_complete(plan, groups, result);
             if !results.values().all(complete) {
                 return Err(damaged(folder, &name, &PartError));
             }
@@ -58,7 +57,8 @@ impl Parts {
             let (Some(first), Some(last)) = (ids.first(), ids.last()) else { continue };
             let place = |id: &LearnerId| format!("arm{}-seed{}", id.arm, id.seed);
             let name = format!("{}-of-{learners}_{}_{}", part.len(), place(first), place(last));
-            folder.commit_part(&name, &encode(part))?;
+            let bytes = encode(part).map_err(|error| RecordError::invalid(&*name, error.to_string()))?;
+            folder.commit_part(&name, &bytes)?;
             self.note(name, &ids);
         }
         Ok(())

@@ -1,20 +1,20 @@
-//! What made a learner fail: the transition and the weight at which a number stopped being finite.
+//! What made a learner diverge: the transition and the weight at which a number stopped being finite.
 //!
 //! Kernels only freeze such a learner where it is. Its lessons and nets are as they were then, so the host finds the
 //! transition by the state and computes its Q-values and its target once more, with the kernels' twins.
 
 use super::batch_group::LearnerId;
 use crate::backend::Cohort;
-use crate::config::plan::{Arm, Plan};
 use crate::backend::cpu::CPU;
+use crate::config::plan::{ArmPlan, Plan};
 use crate::env::workgroup::{Nets, Workgroup};
 use crate::layout::{LANES, LESSON_HEADER_WORDS, PHASE_FAILED, SkillShape};
 use crate::learn::lesson::choice_child;
 use crate::math::functions::is_number;
-use crate::run_folder::failures::{Failure, Number, Transition, Weight};
+use crate::run_folder::failures::{Divergence, Number, Transition, Weight};
 
-/// What a learner of the cohort has failed of, if it has.
-pub fn failure_of(plan: &Plan, cohort: &Cohort, index: usize, id: LearnerId) -> Option<Failure> {
+/// Where a learner of the cohort has diverged, if it has.
+pub fn divergence_of(plan: &Plan, cohort: &Cohort, index: usize, id: LearnerId) -> Option<Divergence> {
     let state = cohort.states[index];
     if state.phase != PHASE_FAILED {
         return None;
@@ -28,7 +28,7 @@ pub fn failure_of(plan: &Plan, cohort: &Cohort, index: usize, id: LearnerId) -> 
     } else {
         "a weight is not finite after the last replayed step"
     };
-    Some(Failure {
+    Some(Divergence {
         arm: arm.name.clone(),
         point: arm.point,
         seed: id.seed,
@@ -41,7 +41,7 @@ pub fn failure_of(plan: &Plan, cohort: &Cohort, index: usize, id: LearnerId) -> 
 }
 
 /// The step in replay, or the last one that was.
-fn transition(arm: &Arm, cohort: &Cohort, index: usize) -> Transition {
+fn transition(arm: &ArmPlan, cohort: &Cohort, index: usize) -> Transition {
     let state = cohort.states[index];
     let number = state.skill as usize;
     let skill = &cohort.shared.skills[number];
@@ -67,7 +67,7 @@ fn transition(arm: &Arm, cohort: &Cohort, index: usize) -> Transition {
     let child = if mirrored { skill.mirror_child[done] as usize } else { done };
     Transition {
         taught,
-        lesson: if taught { place } else { trial_in(place, state.remembered, params[number].memory) },
+        lesson: if taught { place } else { trial_in(place, state.remembered, params[number].replay_capacity) },
         mirrored,
         step,
         child: arm.name_of(arm.skills[number].children[child]).to_owned(),
@@ -85,7 +85,7 @@ fn trial_in(slot: u32, remembered: u32, memory: u32) -> u32 {
 }
 
 /// The first weight of the skill in training that is not finite.
-fn wild_weight(arm: &Arm, cohort: &Cohort, index: usize) -> Option<Weight> {
+fn wild_weight(arm: &ArmPlan, cohort: &Cohort, index: usize) -> Option<Weight> {
     let number = cohort.states[index].skill as usize;
     let skill = &cohort.shared.skills[number];
     let base = index * cohort.nets_stride;
@@ -99,7 +99,14 @@ fn wild_weight(arm: &Arm, cohort: &Cohort, index: usize) -> Option<Weight> {
 }
 
 /// A weight by the name that it has in the learner's file.
-fn named(arm: &Arm, number: usize, skill: &SkillShape, net: usize, (row, lane): (usize, usize), value: f32) -> Weight {
+fn named(
+    arm: &ArmPlan,
+    number: usize,
+    skill: &SkillShape,
+    net: usize,
+    (row, lane): (usize, usize),
+    value: f32,
+) -> Weight {
     let inputs = skill.inputs as usize;
     let outputs = skill.outputs as usize;
     let unit = lane as u32;

@@ -6,12 +6,12 @@
 //! experiments. Speed is measured: some learners of the experiment train for a moment, and the work that they did,
 //! counted in the same units, is divided by the time.
 
-use super::batch_group::{Group, LearnerId};
-use super::pretraining::group_of;
-use super::schedule::Stage;
+use super::batch_group::{BatchGroup, LearnerId, group_of};
+use super::schedule::Wave;
 use crate::backend::{Backend, BackendError, Stop};
-use crate::config::plan::{Backup, Plan, Skill};
-use crate::layout::{LearnerState, TRIAL_WORDS, SkillShape};
+use crate::config::plan::{Plan, SkillPlan};
+use crate::layout::choices::BACKUP_DECISIONS;
+use crate::layout::{LearnerState, SkillShape, TRIAL_WORDS};
 use std::time::{Duration, Instant};
 
 /// Mean length of a trial that ends when its goal is achieved, as a share of `max_steps`: 0.4 to 0.7 in our runs.
@@ -36,8 +36,8 @@ pub struct Forecast {
     /// Learners.
     pub learners: usize,
     /// Learners that train everything below the roots, once for all arms that share it.
-    pub stems: usize,
-    /// Cohorts, those of stems among them.
+    pub pretrained: usize,
+    /// Cohorts, those that are pretrained among them.
     pub cohorts: usize,
     /// Learners of the largest cohort.
     pub largest: usize,
@@ -51,11 +51,11 @@ pub struct Forecast {
     work: f64,
 }
 
-/// Counts what the stages of a run will take.
-pub fn forecast(plan: &Plan, groups: &[Group], stages: &[Stage]) -> Forecast {
+/// Counts what the waves of a run will take.
+pub fn forecast(plan: &Plan, groups: &[BatchGroup], waves: &[Wave]) -> Forecast {
     let mut forecast = Forecast {
         learners: 0,
-        stems: 0,
+        pretrained: 0,
         cohorts: 0,
         largest: 0,
         bytes_per_learner: 0,
@@ -63,21 +63,21 @@ pub fn forecast(plan: &Plan, groups: &[Group], stages: &[Stage]) -> Forecast {
         disk: 0,
         work: 0.0,
     };
-    for stage in stages {
-        let stem = stage.stems.iter().map(|(arm, seeds)| (*arm, seeds.len()));
-        for (arm, learners) in stem.clone() {
+    for wave in waves {
+        let pretrained = wave.pretraining.iter().map(|(arm, seeds)| (*arm, seeds.len()));
+        for (arm, learners) in pretrained {
             forecast.add(group_of(groups, arm), learners);
-            forecast.stems += learners;
+            forecast.pretrained += learners;
             let below = plan.arms[arm].skills.len() - 1;
             forecast.work += learners as f64 * work_of(plan, groups, arm, 0..below);
         }
-        for ids in &stage.cohorts {
+        for ids in &wave.cohorts {
             forecast.add(group_of(groups, ids[0].arm), ids.len());
             forecast.learners += ids.len();
             for run in ids.chunk_by(|a, b| a.arm == b.arm) {
                 let (arm, count) = (run[0].arm, run.len());
                 let skills = plan.arms[arm].skills.len();
-                let first = if stage.stems.is_some() { skills - 1 } else { 0 };
+                let first = if wave.pretraining.is_some() { skills - 1 } else { 0 };
                 forecast.work += count as f64 * work_of(plan, groups, arm, first..skills);
                 forecast.disk += count as u64 * disk_of(plan, group_of(groups, arm), arm);
             }
@@ -87,7 +87,7 @@ pub fn forecast(plan: &Plan, groups: &[Group], stages: &[Stage]) -> Forecast {
 }
 
 impl Forecast {
-    fn add(&mut self, group: &Group, learners: usize) {
+    fn add(&mut self, group: &BatchGroup, learners: usize) {
         let bytes = group.shape.bytes_per_learner();
         self.cohorts += 1;
         self.largest = self.largest.max(learners);
@@ -108,13 +108,13 @@ impl Forecast {
 /// Where the backend fails.
 pub fn measure(
     plan: &Plan,
-    groups: &[Group],
-    stages: &[Stage],
+    groups: &[BatchGroup],
+    waves: &[Wave],
     forecast: &Forecast,
     backend: &mut dyn Backend,
     most: Duration,
 ) -> Result<f64, BackendError> {
-    let Some(ids) = largest(stages) else { return Ok(f64::INFINITY) };
+    let Some(ids) = largest(waves) else { return Ok(f64::INFINITY) };
     let group = group_of(groups, ids[0].arm);
     backend.load(group.cohort(plan, &ids))?;
     let stop = Stop { skill: u32::MAX, trial: u32::MAX };
@@ -141,24 +141,24 @@ pub fn measure(
 }
 
 /// Some learners of the largest cohort.
-fn largest(stages: &[Stage]) -> Option<Vec<LearnerId>> {
-    let of_stems = |stage: &Stage| -> Option<Vec<LearnerId>> {
-        let (arm, seeds) = stage.stems.as_ref()?;
+fn largest(waves: &[Wave]) -> Option<Vec<LearnerId>> {
+    let pretraining = |wave: &Wave| -> Option<Vec<LearnerId>> {
+        let (arm, seeds) = wave.pretraining.as_ref()?;
         Some(seeds.iter().map(|seed| LearnerId { arm: *arm, seed: *seed }).collect())
     };
-    let all = stages.iter().flat_map(|stage| stage.cohorts.iter().cloned().chain(of_stems(stage)));
+    let all = waves.iter().flat_map(|wave| wave.cohorts.iter().cloned().chain(pretraining(wave)));
     let mut most = all.max_by_key(Vec::len)?;
     most.truncate(TIMED);
     Some(most)
 }
 
 /// Work that learners have done, as their states tell.
-fn done(plan: &Plan, groups: &[Group], ids: &[LearnerId], states: &[LearnerState]) -> f64 {
+fn done(plan: &Plan, groups: &[BatchGroup], ids: &[LearnerId], states: &[LearnerState]) -> f64 {
     let each = ids.iter().zip(states).map(|(id, state)| {
         let shape = &group_of(groups, id.arm).shape.skills;
         // A moment reaches no further than the first skill that has trials.
         let skills = &plan.arms[id.arm].skills;
-        let skill = skills.iter().position(|skill| skill.trials > 0).unwrap_or(0);
+        let skill = skills.iter().position(|skill| skill.params.trials > 0).unwrap_or(0);
         f64::from(state.actions) * step(shape, skill) + f64::from(state.updates) * transition(&shape[skill])
     });
     each.sum()
@@ -179,23 +179,23 @@ fn transition(shape: &SkillShape) -> f64 {
 }
 
 /// Mean steps of a trial.
-fn length(skill: &Skill) -> f64 {
-    f64::from(skill.max_steps) * if skill.ends == 0 { 1.0 } else { LENGTH }
+fn length(skill: &SkillPlan) -> f64 {
+    f64::from(skill.params.max_steps) * if skill.goal == 0 { 1.0 } else { LENGTH }
 }
 
 /// Work of one learner in some of its skills.
-fn work_of(plan: &Plan, groups: &[Group], arm: usize, skills: std::ops::Range<usize>) -> f64 {
+fn work_of(plan: &Plan, groups: &[BatchGroup], arm: usize, skills: std::ops::Range<usize>) -> f64 {
     let shape = &group_of(groups, arm).shape.skills;
     let each = skills.map(|number| {
         let skill = &plan.arms[arm].skills[number];
-        let learning = &skill.learning;
-        let taught = if skill.lessons > 0 { learning.taught_replays } else { 0 };
-        let at_decisions = skill.is_high() && learning.backup == Backup::Decisions;
+        let learning = &skill.params;
+        let taught = if skill.params.lessons > 0 { learning.taught_replays } else { 0 };
+        let at_decisions = skill.is_high() && learning.backup == BACKUP_DECISIONS;
         let replays =
-            f64::from(skill.trials) * f64::from(learning.replays + taught) * LEARNED[usize::from(at_decisions)];
+            f64::from(skill.params.trials) * f64::from(learning.replays + taught) * LEARNED[usize::from(at_decisions)];
         // Teachers are quick.
-        let lessons = f64::from(skill.lessons * learning.taught_passes) * 0.5;
-        let acted = f64::from(skill.trials) + f64::from(tests(skill)) * f64::from(plan.evaluate.episodes);
+        let lessons = f64::from(skill.params.lessons * learning.pretrain_epochs) * 0.5;
+        let acted = f64::from(skill.params.trials) + f64::from(tests(skill)) * f64::from(plan.evaluate.episodes);
         let steps = length(skill);
         steps * (acted * step(shape, number) + (replays + lessons) * transition(&shape[number]))
     });
@@ -203,20 +203,20 @@ fn work_of(plan: &Plan, groups: &[Group], arm: usize, skills: std::ops::Range<us
 }
 
 /// Tests of a skill.
-fn tests(skill: &Skill) -> u32 {
-    skill.tested_at.iter().filter(|at| **at < skill.trials).count() as u32 + 1
+fn tests(skill: &SkillPlan) -> u32 {
+    skill.eval_at.iter().filter(|at| **at < skill.params.trials).count() as u32 + 1
 }
 
 /// Bytes that a learner's results take on disk.
-fn disk_of(plan: &Plan, group: &Group, arm: usize) -> u64 {
+fn disk_of(plan: &Plan, group: &BatchGroup, arm: usize) -> u64 {
     let arm = &plan.arms[arm];
     let rooms = plan.world_of(arm).rooms.len() as u64;
     let mut bytes = NET_BYTES[0];
     for (skill, shape) in arm.skills.iter().zip(&group.shape.skills) {
         let tests = u64::from(tests(skill)) * rooms;
-        bytes += u64::from(skill.trials + skill.lessons) * ROW_BYTES[0] + tests * ROW_BYTES[1];
-        if skill.mirror.is_none() && !skill.planned {
-            let weights = u64::from(skill.learning.hidden) * (u64::from(shape.inputs) + 2) + 1;
+        bytes += u64::from(skill.params.trials + skill.params.lessons) * ROW_BYTES[0] + tests * ROW_BYTES[1];
+        if skill.mirror.is_none() && !skill.oracle {
+            let weights = u64::from(skill.params.hidden) * (u64::from(shape.inputs) + 2) + 1;
             bytes += skill.children.len() as u64 * (4 * weights + NET_BYTES[1]);
         }
     }
@@ -224,8 +224,8 @@ fn disk_of(plan: &Plan, group: &Group, arm: usize) -> u64 {
 }
 
 /// Bytes that the committed parts of a run take until it is complete: trial tables and nets as they are in memory.
-pub fn parts_bytes(groups: &[Group], stages: &[Stage]) -> u64 {
-    let cohorts = stages.iter().flat_map(|stage| &stage.cohorts);
+pub fn parts_bytes(groups: &[BatchGroup], waves: &[Wave]) -> u64 {
+    let cohorts = waves.iter().flat_map(|wave| &wave.cohorts);
     let each = cohorts.map(|ids| {
         let shape = &group_of(groups, ids[0].arm).shape;
         let rows = shape.rows_stride.next_multiple_of(TRIAL_WORDS);

@@ -6,13 +6,12 @@
 pub mod allocate;
 pub mod batch;
 pub mod batch_group;
+pub mod callbacks;
 pub mod checkpoint;
 pub mod codec;
-pub mod cohort_state;
 pub mod committed;
 pub mod divergence;
 pub mod estimate;
-mod fingerprint;
 pub mod observation;
 pub mod parity;
 pub mod pretraining;

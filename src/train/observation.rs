@@ -1,11 +1,11 @@
-//! A record's first words as a person reads them.
+//! What a robot senses, as a person reads it.
 
 use crate::backend::{Backend, BackendError};
-use crate::config::plan::{Noise, NoiseKind};
 use crate::env::motion::NO_ACTION;
 use crate::env::segments::SegmentGrid;
 use crate::env::workgroup::CohortData;
-use crate::layout::{RAYS, Robot};
+use crate::layout::choices::NOISE_GAUSSIAN;
+use crate::layout::{Noise, RAYS, Robot};
 use crate::run_folder::PlaceReading;
 use crate::world::tables::Tables;
 use crate::world::{Pose, World};
@@ -13,7 +13,7 @@ use bytemuck::Zeroable;
 
 /// One reading of all sensors.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Senses {
+pub struct SensorValues {
     /// Inches; index 0 straight ahead, then counter-clockwise every 15 degrees.
     pub sonar: [u32; RAYS],
     /// 0 or 1, in the same order.
@@ -24,7 +24,7 @@ pub struct Senses {
     pub compass: f32,
 }
 
-impl Senses {
+impl SensorValues {
     /// What the robot sensed last.
     pub fn of(robot: &Robot) -> Self {
         Self {
@@ -56,13 +56,13 @@ pub fn robot_at(pose: Pose, noise: &Noise, run_seed: u32, robot_seed: u32) -> Ro
         action: NO_ACTION,
         run_seed,
         robot_seed,
-        noise: (*noise).into(),
+        noise: *noise,
         ..Robot::zeroed()
     }
 }
 
 /// No noise at all.
-pub const SILENT: Noise = Noise { kind: NoiseKind::Gaussian, actuator: 0.0, sonar: 0.0, light: 0.0, compass: 0.0 };
+pub const SILENT: Noise = Noise { kind: NOISE_GAUSSIAN, actuator: 0.0, sonar: 0.0, light: 0.0, compass: 0.0 };
 
 /// What a robot senses at the world's named places, without noise.
 ///
@@ -76,14 +76,14 @@ pub fn places(world: &World, backend: &mut dyn Backend) -> Result<Vec<PlaceReadi
     }
     backend.step(&shared, &mut robots, 1)?;
     let reading = |((place, pose), robot): (&(String, Pose), &Robot)| {
-        let senses = Senses::of(robot);
+        let observed = SensorValues::of(robot);
         PlaceReading {
             place: place.clone(),
             x: pose.x,
             y: pose.y,
             heading: pose.heading,
-            sonar: senses.sonar,
-            light: senses.light,
+            sonar: observed.sonar,
+            light: observed.light,
         }
     };
     Ok(world.places.iter().zip(&robots).map(reading).collect())

@@ -1,12 +1,14 @@
 //! A small piece of work that touches every kernel: done on two backends, it must leave the same bytes.
 
-use super::batch_group::{Group, LearnerId, SetupError, groups};
+use super::batch_group::{BatchGroup, LearnerId, SetupError, groups};
 use super::observation::{floor_only, robot_at};
-use crate::backend::parity::{self, Difference, UNWRITTEN};
+use crate::backend::UNWRITTEN;
+use crate::backend::parity::{self, Difference};
 use crate::backend::{Backend, BackendError, Cohort, Stop, Test};
-use crate::config::plan::{NoiseKind, Plan};
+use crate::config::plan::Plan;
 use crate::env::workgroup::CohortData;
-use crate::layout::{Action, Episode, Observation, Robot};
+use crate::layout::choices::{NOISE_GAUSSIAN, NOISE_UNIFORM};
+use crate::layout::{Action, Episode, Noise, Observation, Robot};
 use crate::math::rng::philox;
 use crate::world::Pose;
 use glam::Vec2;
@@ -40,18 +42,18 @@ pub struct Sample {
 fn cut(plan: &Plan, learners: usize) -> Plan {
     let mut plan = plan.clone();
     plan.seeds = (0..learners.div_ceil(plan.arms.len()) as u32).collect();
-    let lessons = plan.arms.iter().flat_map(|arm| &arm.skills).map(|skill| skill.lessons).max();
+    let lessons = plan.arms.iter().flat_map(|arm| &arm.skills).map(|skill| skill.params.lessons).max();
     for arm in &mut plan.arms {
-        arm.teacher.episodes = 1;
-        arm.teacher.bank = arm.teacher.bank.min(lessons.unwrap_or(0).max(16));
+        arm.teacher.eval_episodes = 1;
+        arm.teacher.lessons = arm.teacher.lessons.min(lessons.unwrap_or(0).max(16));
     }
     for skill in plan.arms.iter_mut().flat_map(|arm| &mut arm.skills) {
-        skill.trials = skill.trials.min(TRIALS);
-        let learning = &mut skill.learning;
+        skill.params.trials = skill.params.trials.min(TRIALS);
+        let learning = &mut skill.params;
         learning.replays = learning.replays.min(4);
-        learning.taught_passes = learning.taught_passes.min(1);
+        learning.pretrain_epochs = learning.pretrain_epochs.min(1);
         // The last trial takes the place of the first.
-        learning.memory = learning.memory.min(TRIALS - 1);
+        learning.replay_capacity = learning.replay_capacity.min(TRIALS - 1);
     }
     plan
 }
@@ -70,8 +72,8 @@ fn robots(plan: &Plan) -> Vec<Robot> {
         .zip(free)
         .map(|(number, pose)| {
             let robot = robot_at(pose, &noise, plan.run_seed, number);
-            let flat = [NoiseKind::Gaussian, NoiseKind::Uniform][number as usize % 2];
-            Robot { noise: crate::layout::Noise { kind: flat as u32, ..robot.noise }, ..robot }
+            let kind = [NOISE_GAUSSIAN, NOISE_UNIFORM][number as usize % 2];
+            Robot { noise: Noise { kind, ..robot.noise }, ..robot }
         })
         .collect()
 }
@@ -87,7 +89,7 @@ impl Work {
         let mut ids: Vec<LearnerId> = groups.iter().flat_map(|group| group.learners(&plan)).collect();
         ids.sort_by_key(|id| (id.seed, id.arm));
         ids.truncate(learners);
-        let cohort = |group: &Group| {
+        let cohort = |group: &BatchGroup| {
             let own: Vec<LearnerId> = ids.iter().copied().filter(|id| group.arms.contains(&id.arm)).collect();
             let mut cohort = group.cohort(&plan, &own);
             cohort.lessons.fill(UNWRITTEN);

@@ -1,42 +1,70 @@
 //! Arms that have everything below their roots in common, and so learn it once for each seed; and arms without anything
 //! below their roots that can train in one cohort.
 
-use super::batch_group::{Group, LearnerId, alike};
-use super::fingerprint::{classes, of_stem, of_tasks};
-use crate::config::plan::{Arm, Plan};
+use super::batch_group::{BatchGroup, LearnerId, classes, group_of, structure};
+use super::codec::{json, pod, record};
+use super::result::TestResult;
+use super::thresholds::Fit;
+use crate::config::plan::{ArmPlan, Plan};
+use crate::layout::LearnerState;
+use crate::run_folder::Divergence;
+use serde::{Deserialize, Serialize};
 
-/// Arms whose learners branch from one stem, or that have none and are of one group.
+/// A learner that has learned everything below the root: every arm that shares it goes on from a copy.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Pretrained {
+    /// Its seed, and the first of the arms that go on from it.
+    pub id: LearnerId,
+    #[serde(with = "record")]
+    pub(super) state: LearnerState,
+    #[serde(with = "pod")]
+    pub(super) nets: Vec<f32>,
+    #[serde(with = "pod")]
+    pub(super) rows: Vec<u32>,
+    pub(super) tests: Vec<TestResult>,
+    /// Of each skill below the root that has trials: how success goes with its value.
+    pub(super) fits: Vec<Option<Fit>>,
+    #[serde(with = "json")]
+    pub(super) divergence: Option<Divergence>,
+}
+
+/// The skills that the learners in training share.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Pretraining {
+    /// Who learns them: an arm, the first one that goes on from them, and seeds. Empty where there is nothing below roots.
+    pub learners: Vec<LearnerId>,
+    /// The learners, once they have learned them; none where they still do, or where there are none.
+    pub done: Option<Vec<Pretrained>>,
+}
+
+/// Arms that share all skills below their roots, or that have none there and are of one group.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Family {
+pub struct SharedSkills {
     /// Indices of the arms in the plan.
     pub arms: Vec<usize>,
     /// Whether there is anything to learn below the root.
-    pub stem: bool,
+    pub pretrained: bool,
 }
 
-/// Sorts the plan's arms into families.
-pub fn families(plan: &Plan) -> Vec<Family> {
-    let arm = |index: usize| &plan.arms[index];
-    let stem = |index: usize| arm(index).skills.len() > 1;
-    let related = |a: usize, b: usize| match (stem(a), stem(b)) {
-        (true, true) => related(arm(a), arm(b)),
-        (false, false) => alike(arm(a), arm(b)),
-        _ => false,
-    };
-    let print = |index: usize| if stem(index) { of_stem(arm(index)) } else { of_tasks(arm(index)) };
-    let families = classes(plan.arms.len(), print, related);
-    families.into_iter().map(|arms| Family { stem: stem(arms[0]), arms }).collect()
+/// Sorts the plan's arms by the skills that they share.
+pub fn shared_skills(plan: &Plan) -> Vec<SharedSkills> {
+    let shared = |arms: Vec<usize>| SharedSkills { pretrained: plan.arms[arms[0]].skills.len() > 1, arms };
+    classes(&plan.arms, |arm| below_root(plan, arm)).into_iter().map(shared).collect()
 }
 
-fn related(a: &Arm, b: &Arm) -> bool {
-    let below = |arm: &Arm| arm.skills.len() - 1;
-    (a.world, a.noise, a.robot, a.teacher) == (b.world, b.noise, b.robot, b.teacher)
-        && a.skills[..below(a)] == b.skills[..below(b)]
+/// Text that is equal for arms whose learners are the same until the root begins: all of the arm but its root.
+fn below_root(plan: &Plan, arm: &ArmPlan) -> String {
+    match arm.skills.split_last() {
+        Some((_, below)) if !below.is_empty() => {
+            format!("{:?}", ArmPlan { name: String::new(), point: 0, skills: below.to_vec(), ..arm.clone() })
+        }
+        _ => structure(plan, arm),
+    }
 }
 
-impl Family {
+impl SharedSkills {
     /// Most bytes that a learner of any of the arms takes.
-    pub fn bytes_per_learner(&self, groups: &[Group]) -> usize {
+    pub fn bytes_per_learner(&self, groups: &[BatchGroup]) -> usize {
         self.arms.iter().map(|arm| group_of(groups, *arm).shape.bytes_per_learner()).max().unwrap_or(1)
     }
 
@@ -45,14 +73,4 @@ impl Family {
         let lacks = |seed: &u32| self.arms.iter().any(|arm| !done(&LearnerId { arm: *arm, seed: *seed }));
         plan.seeds.iter().copied().filter(lacks).collect()
     }
-}
-
-/// The group that an arm belongs to.
-pub fn group_of(groups: &[Group], arm: usize) -> &Group {
-    &groups[group_index(groups, arm)]
-}
-
-/// Index of the group that an arm belongs to.
-pub fn group_index(groups: &[Group], arm: usize) -> usize {
-    groups.iter().position(|group| group.arms.binary_search(&arm).is_ok()).unwrap_or(0)
 }

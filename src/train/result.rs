@@ -1,11 +1,13 @@
-//! What one learner leaves behind, and its words in a committed part of a run folder.
+//! What one learner leaves behind, and its bytes in a committed part of a run folder.
 
 use super::batch_group::LearnerId;
-use super::codec::{PartError, Reader, words_of};
-use crate::run_folder::{Failure, Sums};
+use super::codec::{self, PartError, json, pod};
+use crate::run_folder::{Divergence, Sums};
+use serde::{Deserialize, Serialize};
+use std::io;
 
 /// One test of one learner.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TestResult {
     /// Index of the skill.
     pub skill: u32,
@@ -15,26 +17,31 @@ pub struct TestResult {
     pub actions: u32,
     /// 0 for the circumstances of training, else the number of the plan's alteration, counted from 1.
     pub variant: u32,
-    /// One entry per room, and one for starts in no room.
+    /// Test trials that began in each room, and at the end those that began in none.
+    #[serde(with = "pod")]
     pub rooms: Vec<Sums>,
 }
 
 /// All that one learner leaves.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LearnerResult {
     /// Whose results these are.
     pub id: LearnerId,
     /// Where a number stopped being finite, if one did: the learner was frozen there.
-    pub failure: Option<Failure>,
+    #[serde(with = "json")]
+    pub divergence: Option<Divergence>,
     /// Transitions learned from.
     pub updates: u32,
     /// Tests, in order.
     pub tests: Vec<TestResult>,
-    /// Rows of the trial table.
+    /// Rows of the trial table, `ROW_WORDS` words each.
+    #[serde(with = "pod")]
     pub rows: Vec<u32>,
     /// Weights of all nets as they ended.
+    #[serde(with = "pod")]
     pub weights: Vec<f32>,
     /// Thresholds of the root's children.
+    #[serde(with = "pod")]
     pub thresholds: Vec<f32>,
 }
 
@@ -43,7 +50,7 @@ impl LearnerResult {
     pub fn new(id: LearnerId) -> Self {
         Self {
             id,
-            failure: None,
+            divergence: None,
             updates: 0,
             tests: Vec::new(),
             rows: Vec::new(),
@@ -51,114 +58,24 @@ impl LearnerResult {
             thresholds: Vec::new(),
         }
     }
-
-    pub(super) fn write(&self, words: &mut Vec<u32>) {
-        words.extend([self.id.arm as u32, self.id.seed, self.updates]);
-        write_failure(words, self.failure.as_ref());
-        write_tests(words, &self.tests);
-        words.push(self.rows.len() as u32);
-        words.extend(&self.rows);
-        for values in [&self.weights, &self.thresholds] {
-            words.push(values.len() as u32);
-            words.extend(values.iter().map(|value| value.to_bits()));
-        }
-    }
-
-    pub(super) fn read(reader: &mut Reader<'_>) -> Result<Self, PartError> {
-        let [arm, seed, updates] = reader.words()?;
-        let mut result = Self::new(LearnerId { arm: arm as usize, seed });
-        result.updates = updates;
-        result.failure = read_failure(reader)?;
-        result.tests = read_tests(reader)?;
-        let [rows] = reader.words()?;
-        result.rows = reader.slice(rows as usize)?.to_vec();
-        result.weights = reader.singles()?;
-        result.thresholds = reader.singles()?;
-        Ok(result)
-    }
 }
 
-/// A failure is kept as the JSON that `failures.json` will hold: its length in bytes, then words.
-pub(super) fn write_failure(words: &mut Vec<u32>, failure: Option<&Failure>) {
-    // It holds nothing that has no JSON form; were it so, the learner would be listed without its transition.
-    let text = failure.map(|failure| {
-        let bare = || serde_json::to_vec(&Failure { transition: None, weight: None, ..failure.clone() });
-        serde_json::to_vec(failure).or_else(|_| bare()).unwrap_or_default()
-    });
-    let text = text.unwrap_or_default();
-    words.push(text.len() as u32);
-    let word = |bytes: &[u8]| bytes.iter().rev().fold(0, |word, byte| word << 8 | u32::from(*byte));
-    words.extend(text.chunks(4).map(word));
-}
-
-pub(super) fn read_failure(reader: &mut Reader<'_>) -> Result<Option<Failure>, PartError> {
-    let [length] = reader.words()?;
-    let words = reader.slice(length.div_ceil(4) as usize)?;
-    if length == 0 {
-        return Ok(None);
-    }
-    let mut text: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
-    text.truncate(length as usize);
-    let failure: Failure = serde_json::from_slice(&text).map_err(|_| PartError)?;
-    // One text for one failure: another was never written.
-    let mut again = Vec::new();
-    write_failure(&mut again, Some(&failure));
-    if again.first() == Some(&length) && again[1..] == *words { Ok(Some(failure)) } else { Err(PartError) }
-}
-
-pub(super) fn write_tests(words: &mut Vec<u32>, tests: &[TestResult]) {
-    words.push(tests.len() as u32);
-    for test in tests {
-        words.extend([test.skill, test.trials, test.actions, test.variant, test.rooms.len() as u32]);
-        for room in &test.rooms {
-            words.extend([room.episodes, room.successes, room.steps, room.collisions]);
-            for value in [room.reward, room.returned] {
-                write_double(words, value);
-            }
-        }
-    }
-}
-
-pub(super) fn read_tests(reader: &mut Reader<'_>) -> Result<Vec<TestResult>, PartError> {
-    let [tests] = reader.words()?;
-    let mut found = Vec::new();
-    for _test in 0..tests {
-        let [skill, trials, actions, variant, count] = reader.words()?;
-        let mut rooms = Vec::new();
-        for _room in 0..count {
-            let [episodes, successes, steps, collisions] = reader.words()?;
-            let (reward, returned) = (reader.double()?, reader.double()?);
-            rooms.push(Sums { episodes, successes, steps, collisions, reward, returned });
-        }
-        found.push(TestResult { skill, trials, actions, variant, rooms });
-    }
-    Ok(found)
-}
-
-pub(super) fn write_double(words: &mut Vec<u32>, value: f64) {
-    let bits = value.to_bits();
-    words.extend([bits as u32, (bits >> 32) as u32]);
-}
-
-/// Bytes of a part: little-endian words, the number of learners first.
-pub fn encode(results: &[LearnerResult]) -> Vec<u8> {
-    let mut words = vec![results.len() as u32];
-    for result in results {
-        result.write(&mut words);
-    }
-    words.iter().flat_map(|word| word.to_le_bytes()).collect()
+/// Bytes of a part.
+///
+/// # Errors
+/// Where a result has no bytes: a bug.
+pub fn encode(results: &[LearnerResult]) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    codec::write(&results, &mut bytes)?;
+    Ok(bytes)
 }
 
 /// Reads a part back.
 ///
 /// # Errors
-/// Where the bytes end early or go on.
+/// Where the bytes end early, go on, or are not those of results.
 pub fn decode(bytes: &[u8]) -> Result<Vec<LearnerResult>, PartError> {
-    let words = words_of(bytes)?;
-    let mut reader = Reader::new(&words);
-    let [count] = reader.words()?;
-    let results = (0..count).map(|_| LearnerResult::read(&mut reader)).collect::<Result<Vec<_>, _>>()?;
-    reader.end().map(|()| results)
+    codec::read(bytes)
 }
 
 #[cfg(test)]
@@ -174,8 +91,8 @@ mod tests {
         result.rows = vec![1, 2, 3];
         result.weights = vec![0.5, -0.0];
         result.thresholds = vec![-2.0, 0.25];
-        let mut failed = LearnerResult::new(LearnerId { arm: 0, seed: 1 });
-        failed.failure = Some(Failure {
+        let mut diverged = LearnerResult::new(LearnerId { arm: 0, seed: 1 });
+        diverged.divergence = Some(Divergence {
             arm: "a".to_owned(),
             point: 3,
             seed: 1,
@@ -185,17 +102,17 @@ mod tests {
             transition: None,
             weight: Some(Weight { tensor: "t".to_owned(), index: vec![1, 2], value: Number(f32::NEG_INFINITY) }),
         });
-        vec![result, failed, LearnerResult::new(LearnerId { arm: 0, seed: 2 })]
+        vec![result, diverged, LearnerResult::new(LearnerId { arm: 0, seed: 2 })]
     }
 
     #[test]
     fn results_survive_a_round_trip() {
-        assert_eq!(decode(&encode(&example())), Ok(example()));
+        assert_eq!(decode(&encode(&example()).unwrap()), Ok(example()));
     }
 
     #[test]
     fn every_truncation_is_seen() {
-        let bytes = encode(&example());
+        let bytes = encode(&example()).unwrap();
         for length in 0..bytes.len() {
             assert_eq!(decode(&bytes[..length]), Err(PartError), "{length} bytes");
         }

@@ -1,19 +1,18 @@
 //! Runs an experiment into a run folder: cohort after cohort, each committed before the next begins.
 
-use super::batch::{Stem, train, train_stem};
-use super::batch_group::{Group, LearnerId};
-use super::checkpoint::{Checkpoint, Clock, Guard, INTERVAL, Place};
-use super::cohort_state::Standing;
+use super::batch::{pretrain, train};
+use super::batch_group::{BatchGroup, LearnerId, group_of};
+use super::callbacks::{Callbacks, Interrupted};
+use super::checkpoint::{Checkpoint, CohortCallbacks, CohortState, INTERVAL, SaveTimer};
 use super::committed::Parts;
-use super::pretraining::{Family, families, group_of};
-use super::schedule::{Stage, branching, stages};
-use super::train_loop::Halt;
+use super::pretraining::{Pretrained, Pretraining, SharedSkills, shared_skills};
+use super::schedule::{Wave, going_on, trials_of, waves};
 use super::write_results;
 use crate::backend::{Backend, BackendError};
 use crate::config::plan::Plan;
-use crate::run_folder::{Failure, Provenance, RecordError, RunFolder};
+use crate::run_folder::{Provenance, RecordError, RunFolder};
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::{Duration, SystemTime};
 
 /// Why a run stopped.
@@ -41,26 +40,6 @@ pub enum RunError {
     },
 }
 
-/// Told how a run goes, and asked whether it should go on.
-pub trait Observer {
-    /// Trials finished so far, of all learners together, those of an earlier start included.
-    fn trials(&mut self, finished: u64);
-
-    /// A cohort's results are on disk; so many learners are now.
-    fn committed(&mut self, finished: usize);
-
-    /// A learner was frozen because a number stopped being finite.
-    fn failed(&mut self, _failure: &Failure) {}
-
-    /// A checkpoint could not be used, and where it is now.
-    fn set_aside(&mut self, _why: &RecordError, _now: &Path) {}
-
-    /// Whether to stop at the next opportunity.
-    fn stop(&mut self) -> bool {
-        false
-    }
-}
-
 /// How the run is carried out; changes no result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options {
@@ -73,52 +52,62 @@ pub struct Options {
 /// Trains every learner that the folder does not hold yet, then writes the tables, the nets and the manifest.
 ///
 /// # Errors
-/// Where the folder or the device fails, or the observer stops it. What is committed or in the checkpoint is kept: the
+/// Where the folder or the device fails, or the callbacks stop it. What is committed or in the checkpoint is kept: the
 /// same call continues.
 pub fn run(
     plan: &Plan,
-    groups: &[Group],
+    groups: &[BatchGroup],
     mut folder: RunFolder,
     backend: &mut dyn Backend,
     options: Options,
     mut provenance: Provenance,
-    observer: &mut dyn Observer,
+    callbacks: &mut dyn Callbacks,
 ) -> Result<(), RunError> {
     let parts = Parts::read(plan, groups, &folder)?;
-    let saved = saved(plan, groups, &folder, observer)?;
+    let saved = saved(plan, groups, &folder, callbacks)?;
+    let learners = plan.arms.len() * plan.seeds.len();
     let mut run = Run {
         plan,
         groups,
-        families: families(plan),
+        shared: shared_skills(plan),
         options,
-        clock: Clock::new(options.checkpoint.unwrap_or(INTERVAL)),
-        finished: parts.learners().map(|id| trials_of(plan, id)).sum(),
+        timer: SaveTimer::new(options.checkpoint.unwrap_or(INTERVAL)),
+        finished: parts.learners().map(|id| trials_of(&plan.arms[id.arm])).sum(),
         parts,
         folder: &mut folder,
         backend,
-        observer,
+        callbacks,
     };
-    run.observer.trials(run.finished);
-    run.all(saved)?;
-    let Run { mut parts, folder, observer, backend, .. } = run;
-    write_results::finish(plan, groups, folder, &mut parts, backend, observer, |failed| {
-        if failed > 0 {
-            let of = plan.arms.len() * plan.seeds.len();
-            let note = format!("{failed} of {of}, listed in failures.json; each counts as a failure");
-            provenance.notes.insert("learners with numbers that are not finite".to_owned(), note);
-        }
-        provenance.finished = Some(humantime::format_rfc3339_seconds(SystemTime::now()).to_string());
-        provenance
+    // Whether to go on is asked again as soon as learners move.
+    run.callbacks.progress(run.finished);
+    let outcome = run.all(saved);
+    let Run { mut parts, folder, callbacks, backend, .. } = run;
+    let finished = parts.learners().count();
+    let dir = folder.dir().to_owned();
+    let outcome = outcome.and_then(|()| {
+        write_results::finish(plan, groups, folder, &mut parts, backend, callbacks, |diverged| {
+            if diverged > 0 {
+                let note = format!("{diverged} of {learners}, listed in failures.json; each counts as a failure");
+                provenance.notes.insert("learners with numbers that are not finite".to_owned(), note);
+            }
+            provenance.finished = Some(humantime::format_rfc3339_seconds(SystemTime::now()).to_string());
+            provenance
+        })
+    });
+    outcome.map_err(|interrupted| match interrupted {
+        Interrupted::Backend(error) => error.into(),
+        Interrupted::Record(error) => error.into(),
+        Interrupted::Stopped => RunError::Stopped { dir, finished, learners },
     })
 }
 
 /// The checkpoint that an earlier start has left, if it can be gone on from.
 fn saved(
     plan: &Plan,
-    groups: &[Group],
+    groups: &[BatchGroup],
     folder: &RunFolder,
-    observer: &mut dyn Observer,
-) -> Result<Option<Checkpoint>, RecordError> {
+    callbacks: &mut dyn Callbacks,
+) -> Result<Option<Checkpoint<'static>>, RecordError> {
     let read = folder.read_checkpoint().and_then(|bytes| {
         let Some(bytes) = bytes else { return Ok(None) };
         Checkpoint::read(&bytes, plan, groups).map(Some).map_err(|error| RecordError::Damaged {
@@ -129,72 +118,64 @@ fn saved(
     });
     match read {
         Err(why @ (RecordError::Damaged { .. } | RecordError::OtherProgram { .. })) => {
-            observer.set_aside(&why, &folder.set_checkpoint_aside()?);
+            callbacks.set_aside(&why, &folder.set_checkpoint_aside()?);
             Ok(None)
         }
         other => other,
     }
 }
 
-fn trials_of(plan: &Plan, id: LearnerId) -> u64 {
-    plan.arms[id.arm].skills.iter().map(|skill| u64::from(skill.trials)).sum()
-}
-
-fn root_trials(plan: &Plan, id: LearnerId) -> u64 {
-    plan.arms[id.arm].skills.last().map_or(0, |root| u64::from(root.trials))
-}
-
 /// A run that is going on.
 struct Run<'a> {
     plan: &'a Plan,
-    groups: &'a [Group],
-    families: Vec<Family>,
+    groups: &'a [BatchGroup],
+    shared: Vec<SharedSkills>,
     options: Options,
-    clock: Clock,
+    timer: SaveTimer,
     /// Trials of the learners that are finished.
     finished: u64,
     parts: Parts,
     folder: &'a mut RunFolder,
     backend: &'a mut dyn Backend,
-    observer: &'a mut dyn Observer,
+    callbacks: &'a mut dyn Callbacks,
 }
 
 impl Run<'_> {
     /// Trains all learners, those that were in training first.
-    fn all(&mut self, saved: Option<Checkpoint>) -> Result<(), RunError> {
-        if let Some(Checkpoint { place, standing }) = saved {
-            self.resume(place, standing)?;
+    fn all(&mut self, saved: Option<Checkpoint<'_>>) -> Result<(), Interrupted> {
+        if let Some(Checkpoint { pretraining, cohort }) = saved {
+            self.resume(pretraining.into_owned(), cohort)?;
         }
         let size = |bytes| self.size(bytes);
-        for Stage { stems, cohorts } in stages(self.plan, self.groups, size, |id| self.parts.holds(id))? {
-            let mut place = Place::default();
-            if let Some((arm, seeds)) = stems {
-                place.branches = seeds.into_iter().map(|seed| LearnerId { arm, seed }).collect();
-                self.grow(&mut place, None)?;
+        for Wave { pretraining, cohorts } in waves(self.plan, self.groups, size, |id| self.parts.holds(id))? {
+            let mut shared = Pretraining::default();
+            if let Some((arm, seeds)) = pretraining {
+                shared.learners = seeds.into_iter().map(|seed| LearnerId { arm, seed }).collect();
+                self.pretrain(&mut shared, None)?;
             }
             for learners in cohorts {
-                self.cohort(&place, &learners, None)?;
+                self.cohort(&shared, &learners, None)?;
             }
             self.folder.remove_checkpoint();
         }
         Ok(())
     }
 
-    /// Goes on with learners that were saved, and then with all others that have stems in common with them.
-    fn resume(&mut self, mut place: Place, standing: Standing) -> Result<(), RunError> {
-        let mut standing = Some(standing);
-        if !place.branches.is_empty() && place.stems.is_none() {
-            self.grow(&mut place, standing.take())?;
+    /// Goes on with learners that were saved, and then with all others that share their skills.
+    fn resume(&mut self, mut shared: Pretraining, cohort: CohortState<'_>) -> Result<(), Interrupted> {
+        let mut cohort = Some(cohort);
+        if !shared.learners.is_empty() && shared.done.is_none() {
+            self.pretrain(&mut shared, cohort.take())?;
         }
-        if let Some(standing) = standing {
-            self.cohort(&place, &standing.learners(), Some(standing))?;
+        if let Some(cohort) = cohort {
+            self.cohort(&shared, &cohort.learners(), Some(cohort))?;
         }
-        if let Some(first) = place.branches.first() {
-            let seeds: Vec<u32> = place.branches.iter().map(|id| id.seed).collect();
+        if let Some(first) = shared.learners.first() {
+            let seeds: Vec<u32> = shared.learners.iter().map(|id| id.seed).collect();
             let size = |bytes| self.size(bytes);
             let done = |id: &LearnerId| self.parts.holds(id);
-            for learners in branching(self.plan, self.groups, (first.arm, &seeds), size, done)? {
-                self.cohort(&place, &learners, None)?;
+            for learners in going_on(self.plan, self.groups, (first.arm, &seeds), size, done)? {
+                self.cohort(&shared, &learners, None)?;
             }
         }
         self.folder.remove_checkpoint();
@@ -206,73 +187,66 @@ impl Run<'_> {
         self.options.cohort.map_or_else(|| self.backend.cohort_size(bytes_per_learner), Ok)
     }
 
-    /// Trains the stems.
-    fn grow(&mut self, place: &mut Place, saved: Option<Standing>) -> Result<(), RunError> {
-        let Some(first) = place.branches.first() else { return Ok(()) };
+    /// Trains the skills that arms share.
+    fn pretrain(&mut self, shared: &mut Pretraining, saved: Option<CohortState<'_>>) -> Result<(), Interrupted> {
+        let Some(first) = shared.learners.first() else { return Ok(()) };
         let (plan, group) = (self.plan, group_of(self.groups, first.arm));
-        // A stem's trials count for every learner that will go on from it.
-        let share = (self.lacking(place).len() as u64, place.branches.len() as u64);
+        // A pretrained learner's trials count for every learner that will go on from it.
+        let share = (self.lacking(shared).len() as u64, shared.learners.len() as u64);
         let before = self.finished;
-        let (backend, mut guard) = self.guard(place, before, share);
-        let stems = train_stem(plan, group, &place.branches, saved, backend, &mut guard);
-        place.stems = Some(stems.map_err(|halt| self.stopped(halt))?);
+        let (backend, mut callbacks) = self.watch(shared, before, share);
+        shared.done = Some(pretrain(plan, group, &shared.learners, saved, backend, &mut callbacks)?);
         Ok(())
     }
 
-    /// The learners with these stems that are not finished.
-    fn lacking(&self, place: &Place) -> BTreeSet<LearnerId> {
-        let family = place.branches.first().map(|first| first.arm);
-        let family = family.and_then(|arm| self.families.iter().find(|family| family.arms.binary_search(&arm).is_ok()));
-        let arms = family.map_or(&[][..], |family| &family.arms);
-        let all = place.branches.iter().flat_map(|id| arms.iter().map(|arm| LearnerId { arm: *arm, seed: id.seed }));
+    /// The learners with these shared skills that are not finished.
+    fn lacking(&self, pretraining: &Pretraining) -> BTreeSet<LearnerId> {
+        let first = pretraining.learners.first().map(|first| first.arm);
+        let shared = first.and_then(|arm| self.shared.iter().find(|shared| shared.arms.binary_search(&arm).is_ok()));
+        let arms = shared.map_or(&[][..], |shared| &shared.arms);
+        let all =
+            pretraining.learners.iter().flat_map(|id| arms.iter().map(|arm| LearnerId { arm: *arm, seed: id.seed }));
         all.filter(|id| !self.parts.holds(id)).collect()
     }
 
     /// Trains some learners and commits what they leave.
-    fn cohort(&mut self, place: &Place, learners: &[LearnerId], saved: Option<Standing>) -> Result<(), RunError> {
+    fn cohort(
+        &mut self,
+        shared: &Pretraining,
+        learners: &[LearnerId],
+        saved: Option<CohortState<'_>>,
+    ) -> Result<(), Interrupted> {
         let Some(first) = learners.first() else { return Ok(()) };
         let (plan, group) = (self.plan, group_of(self.groups, first.arm));
-        let stems: BTreeMap<u32, &Stem> = place.stems.iter().flatten().map(|stem| (stem.id.seed, stem)).collect();
-        let stem_of = |id: LearnerId| stems.get(&id.seed).copied();
-        // Those whose turn is still to come have their stems' trials behind them.
-        let mut others = self.lacking(place);
+        let done: BTreeMap<u32, &Pretrained> = shared.done.iter().flatten().map(|one| (one.id.seed, one)).collect();
+        let pretrained = |id: LearnerId| done.get(&id.seed).copied();
+        // Those whose turn is still to come have the trials of the shared skills behind them.
+        let mut others = self.lacking(shared);
         others.retain(|id| !learners.contains(id));
-        let below: u64 = others.iter().map(|id| trials_of(plan, *id) - root_trials(plan, *id)).sum();
-        let before = self.finished + below;
-        let (backend, mut guard) = self.guard(place, before, (1, 1));
-        let results = train(plan, group, learners, &stem_of, saved, backend, &mut guard);
-        let results = results.map_err(|halt| self.stopped(halt))?;
+        let of = |id: &LearnerId| trials_of(&plan.arms[id.arm]);
+        let of_root = |id: &LearnerId| plan.arms[id.arm].skills.last().map_or(0, |root| u64::from(root.params.trials));
+        let before = self.finished + others.iter().map(|id| of(id) - of_root(id)).sum::<u64>();
+        let (backend, mut callbacks) = self.watch(shared, before, (1, 1));
+        let results = train(plan, group, learners, &pretrained, saved, backend, &mut callbacks)?;
         // Some may be finished: an earlier start may have been killed while it committed them.
-        let new: u64 = learners.iter().filter(|id| !self.parts.holds(id)).map(|id| trials_of(plan, *id)).sum();
-        self.parts.commit(self.folder, &results, self.learners())?;
+        let new: u64 = learners.iter().filter(|id| !self.parts.holds(id)).map(of).sum();
+        self.parts.commit(self.folder, &results, self.plan.arms.len() * self.plan.seeds.len())?;
         self.finished += new;
-        for failure in results.iter().filter_map(|result| result.failure.as_ref()) {
-            self.observer.failed(failure);
+        for divergence in results.iter().filter_map(|result| result.divergence.as_ref()) {
+            self.callbacks.diverged(divergence);
         }
-        self.observer.committed(self.parts.learners().count());
+        self.callbacks.committed(self.parts.learners().count());
         Ok(())
     }
 
-    /// What looks after a cohort, where so many trials were finished before.
-    fn guard<'a>(&'a mut self, place: &'a Place, before: u64, share: (u64, u64)) -> (&'a mut dyn Backend, Guard<'a>) {
-        let guard =
-            Guard { folder: self.folder, observer: self.observer, clock: &mut self.clock, place, before, share };
-        (self.backend, guard)
-    }
-
-    fn learners(&self) -> usize {
-        self.plan.arms.len() * self.plan.seeds.len()
-    }
-
-    fn stopped(&self, halt: Halt) -> RunError {
-        match halt {
-            Halt::Backend(error) => error.into(),
-            Halt::Record(error) => error.into(),
-            Halt::Stopped => RunError::Stopped {
-                dir: self.folder.dir().into(),
-                finished: self.parts.learners().count(),
-                learners: self.learners(),
-            },
-        }
+    /// The backend, and what looks after a cohort on it, where so many trials were finished before.
+    fn watch<'a>(
+        &'a mut self,
+        pretraining: &'a Pretraining,
+        before: u64,
+        share: (u64, u64),
+    ) -> (&'a mut dyn Backend, CohortCallbacks<'a>) {
+        let (folder, run, timer) = (&mut *self.folder, &mut *self.callbacks, &mut self.timer);
+        (self.backend, CohortCallbacks { folder, run, timer, pretraining, before, share })
     }
 }

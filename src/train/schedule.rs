@@ -1,70 +1,75 @@
 //! Which learners train together, and in what order.
 //!
-//! No result depends on it. A stem is trained once for each seed, and all arms that share it branch from it before the
-//! next seeds' stems are trained, so that few stems are in memory. Learners of several arms and points share a cohort if
-//! they are of one group: a sweep of thousands of points with few seeds still fills a device.
+//! No result depends on it. What arms share below their roots is trained once for each seed, and all of these arms go on
+//! from there before the next seeds are begun, so that few pretrained learners are in memory. Learners of several arms and
+//! points share a cohort if they are of one group: a sweep of thousands of points with few seeds still fills a device.
 
-use super::batch_group::{Group, LearnerId};
-use super::pretraining::{Family, families, group_index};
-use crate::config::plan::Plan;
+use super::batch_group::{BatchGroup, LearnerId, group_index};
+use super::pretraining::{SharedSkills, shared_skills};
+use crate::config::plan::{ArmPlan, Plan};
 use std::collections::BTreeMap;
 
-/// Cohorts that go on from the same stems.
+/// Cohorts that go on from the same pretrained learners.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Stage {
-    /// The arm and the seeds whose stems are trained first, as one cohort; none where there is nothing below the roots.
-    pub stems: Option<(usize, Vec<u32>)>,
+pub struct Wave {
+    /// The arm and the seeds that are pretrained first, as one cohort; none where there is nothing below the roots.
+    pub pretraining: Option<(usize, Vec<u32>)>,
     /// The cohorts, each of learners of one group.
     pub cohorts: Vec<Vec<LearnerId>>,
 }
 
-/// The stages of a run, in order, without the learners that are `done`. `size` gives the most learners of a cohort
+/// The waves of a run, in order, without the learners that are `done`. `size` gives the most learners of a cohort
 /// from the bytes that one takes.
 ///
 /// # Errors
 /// Those of `size`.
-pub fn stages<E>(
+pub fn waves<E>(
     plan: &Plan,
-    groups: &[Group],
+    groups: &[BatchGroup],
     mut size: impl FnMut(usize) -> Result<usize, E>,
     done: impl Fn(&LearnerId) -> bool,
-) -> Result<Vec<Stage>, E> {
-    let mut stages = Vec::new();
-    for family in families(plan) {
-        let most = size(family.bytes_per_learner(groups))?.max(1);
-        let open = family.open_seeds(plan, &done);
-        // Without stems, all seeds are in one stage.
-        let stretch = if family.stem { most } else { open.len().max(1) };
+) -> Result<Vec<Wave>, E> {
+    let mut waves = Vec::new();
+    for shared in shared_skills(plan) {
+        let most = size(shared.bytes_per_learner(groups))?.max(1);
+        let open = shared.open_seeds(plan, &done);
+        // Without pretraining, all seeds are in one wave.
+        let stretch = if shared.pretrained { most } else { open.len().max(1) };
         for seeds in parts(&open, stretch) {
-            let stems = family.stem.then(|| (family.arms[0], seeds.to_vec()));
-            stages.push(Stage { stems, cohorts: cohorts(plan, groups, &family, seeds, most, &done) });
+            let pretraining = shared.pretrained.then(|| (shared.arms[0], seeds.to_vec()));
+            waves.push(Wave { pretraining, cohorts: cohorts(plan, groups, &shared, seeds, most, &done) });
         }
     }
-    Ok(stages)
+    Ok(waves)
 }
 
-/// The cohorts that go on from the stems of some seeds and an arm that has them, without the learners that are `done`.
+/// The cohorts that go on from an arm's pretrained learners of some seeds, without the learners that are `done`.
 ///
 /// # Errors
 /// Those of `size`.
-pub fn branching<E>(
+pub fn going_on<E>(
     plan: &Plan,
-    groups: &[Group],
+    groups: &[BatchGroup],
     (arm, seeds): (usize, &[u32]),
     size: impl FnOnce(usize) -> Result<usize, E>,
     done: impl Fn(&LearnerId) -> bool,
 ) -> Result<Vec<Vec<LearnerId>>, E> {
-    let Some(family) = families(plan).into_iter().find(|family| family.arms.contains(&arm)) else {
+    let Some(shared) = shared_skills(plan).into_iter().find(|shared| shared.arms.contains(&arm)) else {
         return Ok(Vec::new());
     };
-    let most = size(family.bytes_per_learner(groups))?.max(1);
-    Ok(cohorts(plan, groups, &family, seeds, most, &done))
+    let most = size(shared.bytes_per_learner(groups))?.max(1);
+    Ok(cohorts(plan, groups, &shared, seeds, most, &done))
+}
+
+/// Trials of all skills of an arm.
+pub(super) fn trials_of(arm: &ArmPlan) -> u64 {
+    arm.skills.iter().map(|skill| u64::from(skill.params.trials)).sum()
 }
 
 fn cohorts(
     plan: &Plan,
-    groups: &[Group],
-    family: &Family,
+    groups: &[BatchGroup],
+    shared: &SharedSkills,
     seeds: &[u32],
     most: usize,
     done: &impl Fn(&LearnerId) -> bool,
@@ -72,10 +77,10 @@ fn cohorts(
     // Tests under alterations are numbered by the root's trials, all learners of a cohort at once.
     let trials = |arm: usize| match plan.alterations[..] {
         [] => 0,
-        _ => plan.arms[arm].skills.last().map_or(0, |root| root.trials),
+        _ => plan.arms[arm].skills.last().map_or(0, |root| root.params.trials),
     };
     let mut alike: BTreeMap<(usize, u32), Vec<LearnerId>> = BTreeMap::new();
-    for arm in &family.arms {
+    for arm in &shared.arms {
         let own = seeds.iter().map(|seed| LearnerId { arm: *arm, seed: *seed }).filter(|id| !done(id));
         alike.entry((group_index(groups, *arm), trials(*arm))).or_default().extend(own);
     }

@@ -12,6 +12,7 @@ use crate::env::workgroup::{Nets, Workgroup};
 use crate::layout::{HyperParams, LearnerState, TERMINATED};
 use crate::learn::lesson::{LESSON_END, LESSON_STEPS};
 use bytemuck::Zeroable;
+use serde::{Deserialize, Serialize};
 
 /// Newton steps of a fit; it has settled long before.
 const ROUNDS: u32 = 50;
@@ -21,7 +22,7 @@ const SMALLEST: f64 = 1.0e-6;
 const RIDGE: f64 = 1.0e-3;
 
 /// Log odds of success, as a line over the best Q-value.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Fit {
     /// At value 0.
     pub offset: f64,
@@ -104,8 +105,8 @@ pub fn fit(cohort: &Cohort, learner: usize, skill: usize) -> Fit {
     let params = &cohort.params[learner * cohort.skills..][..cohort.skills];
     let nets = &cohort.nets[learner * cohort.nets_stride..][..cohort.nets_stride];
     let mut lessons = cohort.lessons[learner * cohort.lessons_stride..][..cohort.lessons_stride].to_vec();
-    let HyperParams { trials, memory, .. } = params[skill];
-    let kept = trials.min(memory);
+    let HyperParams { trials, replay_capacity, .. } = params[skill];
+    let kept = trials.min(replay_capacity);
     let mut group = Workgroup {
         nets: Nets::Read(nets),
         lessons: &mut lessons,
@@ -114,7 +115,7 @@ pub fn fit(cohort: &Cohort, learner: usize, skill: usize) -> Fit {
     };
     let mut seen = Vec::new();
     for age in 0..kept.div_ceil(2) {
-        let slot = (trials - 1 - age) % memory;
+        let slot = (trials - 1 - age) % replay_capacity;
         group.state.replay_lesson = plan.memory_offset + slot * plan.lesson_stride;
         let achieved = group.lesson_word(LESSON_END) == TERMINATED;
         for step in 0..group.lesson_word(LESSON_STEPS) {

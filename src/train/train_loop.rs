@@ -1,14 +1,15 @@
 //! A cohort on its way up the tree of skills: to each test point in turn, and the tests there.
 //!
-//! What is done at a stretch is short, and after each stretch the [`Keeper`] may have all saved, or end it: what is saved
-//! is the learners' memory and the tests that they have taken, and whoever goes on from there skips what lies behind.
+//! What is done at a stretch is short, and after each stretch the callbacks may have all saved, or end it: what is saved is
+//! the learners' memory and the tests that they have taken, and whoever goes on from there skips what lies behind.
 
-use super::batch_group::{Group, LearnerId};
+use super::batch_group::{BatchGroup, LearnerId};
+use super::callbacks::{Callbacks, Interrupted, Signal, Snapshot};
 use super::result::{LearnerResult, TestResult};
 use crate::backend::{Backend, BackendError, Cohort, Stop, Test};
 use crate::config::plan::Plan;
 use crate::layout::{EPISODE_TERMINATED, Episode, LearnerState, PHASE_FAILED};
-use crate::run_folder::{RecordError, Sums};
+use crate::run_folder::Sums;
 use crate::world::World;
 use glam::Vec2;
 use std::ops::Range;
@@ -17,111 +18,52 @@ use std::time::{Duration, Instant};
 /// Time that the tests of some learners may take before anybody can look at the clock.
 const STRETCH: Duration = Duration::from_millis(400);
 
-/// What a cohort should do next.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Wish {
-    /// Go on.
-    GoOn,
-    /// Have everything saved, and go on.
-    Save,
-    /// Have everything saved, and end.
-    Stop,
-}
-
-/// A cohort as it is saved.
-#[derive(Debug, Clone, Copy)]
-pub struct Moment<'a> {
-    /// The tests taken so far; after training, all that the learners leave.
-    pub results: &'a [LearnerResult],
-    /// The learners' memory.
-    pub cohort: &'a Cohort,
-    /// Whether training is over, so that only tests under alterations are to come. Lessons and rows no longer count.
-    pub trained: bool,
-}
-
-/// Looks after a cohort while it trains.
-pub trait Keeper {
-    /// Told how many trials all learners together have finished; says what to do next.
-    fn look(&mut self, trials: u64) -> Wish;
-
-    /// Saves what is needed to go on from here.
-    ///
-    /// # Errors
-    /// Where it cannot be saved.
-    fn save(&mut self, moment: &Moment<'_>) -> Result<(), RecordError>;
-}
-
-/// Lets the cohort train to its end.
-impl Keeper for () {
-    fn look(&mut self, _trials: u64) -> Wish {
-        Wish::GoOn
-    }
-
-    fn save(&mut self, _moment: &Moment<'_>) -> Result<(), RecordError> {
-        Ok(())
-    }
-}
-
-/// Why a cohort has not come to its end.
-#[derive(Debug, thiserror::Error)]
-pub enum Halt {
-    /// The device failed.
-    #[error(transparent)]
-    Backend(#[from] BackendError),
-    /// What was to be saved could not be.
-    #[error(transparent)]
-    Record(#[from] RecordError),
-    /// It was told to, and is saved.
-    #[error("stopped and saved")]
-    Stopped,
-}
-
 /// The learners of a backend's cohort, and what they leave so far.
-pub(super) struct Climb<'a> {
+pub(super) struct TrainLoop<'a> {
     pub(super) plan: &'a Plan,
-    pub(super) group: &'a Group,
+    pub(super) group: &'a BatchGroup,
     pub(super) backend: &'a mut dyn Backend,
-    pub(super) keeper: &'a mut dyn Keeper,
+    pub(super) callbacks: &'a mut dyn Callbacks,
     pub(super) results: Vec<LearnerResult>,
     /// Learners that are tested at a stretch.
     stretch: usize,
 }
 
-impl<'a> Climb<'a> {
+impl<'a> TrainLoop<'a> {
     pub(super) fn new(
         plan: &'a Plan,
-        group: &'a Group,
+        group: &'a BatchGroup,
         backend: &'a mut dyn Backend,
-        keeper: &'a mut dyn Keeper,
+        callbacks: &'a mut dyn Callbacks,
         results: Vec<LearnerResult>,
     ) -> Self {
-        Self { plan, group, backend, keeper, results, stretch: 1 }
+        Self { plan, group, backend, callbacks, results, stretch: 1 }
     }
 
     /// Brings all learners through the trials of some skills, with every test on the way.
-    pub(super) fn climb(&mut self, skills: Range<usize>) -> Result<(), Halt> {
+    pub(super) fn train(&mut self, skills: Range<usize>) -> Result<(), Interrupted> {
         let ids: Vec<LearnerId> = self.results.iter().map(|result| result.id).collect();
         let world = self.plan.world_of(&self.plan.arms[self.group.arms[0]]);
         for skill in skills {
             for point in test_points(self.plan, &ids, skill) {
                 let states = self.reach(Stop { skill: skill as u32, trial: point })?;
-                let taker = Taker { skill: skill as u32, trials: point, variant: 0, world };
+                let test = Evaluation { skill: skill as u32, trials: point, variant: 0, world };
                 let wanted = |index: usize| {
                     states[index].phase != PHASE_FAILED && tested_at(self.plan, ids[index], skill, point)
                 };
                 let wanted: Vec<bool> = (0..ids.len()).map(wanted).collect();
-                self.test(&taker, &wanted, &states, None)?;
+                self.evaluate(&test, &wanted, &states, None)?;
             }
         }
         Ok(())
     }
 
     /// Moves all learners on until they hold at `stop`, and hands back where they stand.
-    pub(super) fn reach(&mut self, stop: Stop) -> Result<Vec<LearnerState>, Halt> {
+    pub(super) fn reach(&mut self, stop: Stop) -> Result<Vec<LearnerState>, Interrupted> {
         let mut last = Vec::new();
         loop {
             let states = self.backend.advance(stop)?.to_vec();
-            self.look(&states, None)?;
+            self.report(&states, None)?;
             if states.iter().all(|state| stop.holds(state)) {
                 return Ok(states);
             }
@@ -135,17 +77,18 @@ impl<'a> Climb<'a> {
     }
 
     /// Tests the learners that are wanted and have not taken this test yet, some at a time.
-    pub(super) fn test(
+    pub(super) fn evaluate(
         &mut self,
-        taker: &Taker<'_>,
+        evaluation: &Evaluation<'_>,
         wanted: &[bool],
         states: &[LearnerState],
         trained: Option<&Cohort>,
-    ) -> Result<(), Halt> {
+    ) -> Result<(), Interrupted> {
         let count = self.plan.evaluate.episodes as usize;
-        let test = Test { skill: taker.skill, number: taker.trials, episodes: count as u32 };
+        let test = Test { skill: evaluation.skill, number: evaluation.trials, episodes: count as u32 };
         let mut first = 0;
-        while let Some(next) = (first..wanted.len()).find(|index| wanted[*index] && !taker.took(&self.results[*index]))
+        while let Some(next) =
+            (first..wanted.len()).find(|index| wanted[*index] && !evaluation.took(&self.results[*index]))
         {
             if count == 0 {
                 return Ok(());
@@ -155,8 +98,8 @@ impl<'a> Climb<'a> {
             let episodes = self.backend.evaluate_some(test, learners.clone())?;
             let elapsed = begun.elapsed();
             for (index, own) in learners.clone().zip(episodes.chunks(count)) {
-                if wanted[index] && !taker.took(&self.results[index]) {
-                    self.results[index].tests.push(taker.result(states[index].actions, own));
+                if wanted[index] && !evaluation.took(&self.results[index]) {
+                    self.results[index].tests.push(evaluation.result(states[index].actions, own));
                 }
             }
             if elapsed > STRETCH {
@@ -165,29 +108,29 @@ impl<'a> Climb<'a> {
                 self.stretch *= 2;
             }
             first = learners.end;
-            self.look(states, trained)?;
+            self.report(states, trained)?;
         }
         Ok(())
     }
 
-    /// Asks the keeper, and does what it says.
-    fn look(&mut self, states: &[LearnerState], trained: Option<&Cohort>) -> Result<(), Halt> {
+    /// Tells how far the learners are, and does what the answer is.
+    fn report(&mut self, states: &[LearnerState], trained: Option<&Cohort>) -> Result<(), Interrupted> {
         let trials = self.results.iter().zip(states).map(|(own, state)| trials_of(self.plan, own.id, state)).sum();
-        let wish = self.keeper.look(trials);
-        if wish == Wish::GoOn {
+        let signal = self.callbacks.progress(trials);
+        if signal == Signal::Continue {
             return Ok(());
         }
         let cohort = match trained {
             Some(cohort) => cohort,
             None => self.backend.memory()?,
         };
-        self.keeper.save(&Moment { results: &self.results, cohort, trained: trained.is_some() })?;
-        if wish == Wish::Stop { Err(Halt::Stopped) } else { Ok(()) }
+        self.callbacks.save(&Snapshot { results: &self.results, cohort, trained: trained.is_some() })?;
+        if signal == Signal::Stop { Err(Interrupted::Stopped) } else { Ok(()) }
     }
 }
 
 /// A test that learners take.
-pub(super) struct Taker<'a> {
+pub(super) struct Evaluation<'a> {
     /// Index of the skill.
     pub(super) skill: u32,
     /// Trials of the skill before the test.
@@ -198,7 +141,7 @@ pub(super) struct Taker<'a> {
     pub(super) world: &'a World,
 }
 
-impl Taker<'_> {
+impl Evaluation<'_> {
     fn took(&self, result: &LearnerResult) -> bool {
         let own = (self.skill, self.trials, self.variant);
         result.tests.iter().any(|test| (test.skill, test.trials, test.variant) == own)
@@ -215,8 +158,8 @@ fn test_points(plan: &Plan, learners: &[LearnerId], skill: usize) -> Vec<u32> {
     let mut points = Vec::new();
     for id in learners {
         let own = &plan.arms[id.arm].skills[skill];
-        points.extend(own.tested_at.iter().copied().filter(|point| *point <= own.trials));
-        points.push(own.trials);
+        points.extend(own.eval_at.iter().copied().filter(|point| *point <= own.params.trials));
+        points.push(own.params.trials);
     }
     points.sort_unstable();
     points.dedup();
@@ -225,13 +168,13 @@ fn test_points(plan: &Plan, learners: &[LearnerId], skill: usize) -> Vec<u32> {
 
 fn tested_at(plan: &Plan, id: LearnerId, skill: usize, point: u32) -> bool {
     let own = &plan.arms[id.arm].skills[skill];
-    point == own.trials || (point < own.trials && own.tested_at.contains(&point))
+    point == own.params.trials || (point < own.params.trials && own.eval_at.contains(&point))
 }
 
 /// Trials that a learner has finished, over all skills.
 fn trials_of(plan: &Plan, id: LearnerId, state: &LearnerState) -> u64 {
     let skills = &plan.arms[id.arm].skills;
-    let before: u32 = skills.iter().take(state.skill as usize).map(|skill| skill.trials).sum();
+    let before: u32 = skills.iter().take(state.skill as usize).map(|skill| skill.params.trials).sum();
     u64::from(before + state.trial)
 }
 

@@ -1,10 +1,10 @@
 //! Example trajectories: what the first seed's learner of each arm does from the world's named places.
 
 use super::batch::unpack;
-use super::batch_group::Group;
+use super::batch_group::BatchGroup;
 use super::result::LearnerResult;
-use crate::config::plan::Plan;
 use crate::backend::cpu::CPU;
+use crate::config::plan::Plan;
 use crate::env::workgroup::{Nets, Workgroup};
 use crate::layout::{Dispatch, EPISODE_RUNNING, EPISODE_TERMINATED, Episode};
 use crate::policy::applicability::run_child;
@@ -16,7 +16,7 @@ const NUMBER: u32 = 0xff_ffff;
 
 /// Greedy trials of a learner's root from every named place of its world. Made on the host by the kernel's twin: the same
 /// for every backend.
-pub fn trajectories(plan: &Plan, group: &Group, result: &LearnerResult) -> Vec<Trajectory> {
+pub fn trajectories(plan: &Plan, group: &BatchGroup, result: &LearnerResult) -> Vec<Trajectory> {
     let mut out = Vec::new();
     let own = &plan.arms[result.id.arm];
     let root = group.shape.skills.len() - 1;

@@ -1,12 +1,12 @@
 //! From learners' results to the files of a run folder.
 
 use super::batch::unpack;
-use super::batch_group::{Group, LearnerId};
+use super::batch_group::{BatchGroup, LearnerId, group_of};
+use super::callbacks::{Callbacks, Interrupted, Signal};
 use super::committed::Parts;
 use super::observation;
-use super::pretraining::group_of;
 use super::result::LearnerResult;
-use super::run::{Observer, RunError};
+use super::schedule::trials_of;
 use super::trajectories::trajectories;
 use crate::backend::Backend;
 use crate::config::plan::Plan;
@@ -26,16 +26,16 @@ use std::collections::BTreeMap;
 /// does no harm: the parts stay until the manifest is there.
 ///
 /// # Errors
-/// Where the folder or the device fails, or the observer stops it.
+/// Where the folder or the device fails, or the callbacks stop it.
 pub fn finish(
     plan: &Plan,
-    groups: &[Group],
+    groups: &[BatchGroup],
     folder: &RunFolder,
     parts: &mut Parts,
     backend: &mut dyn Backend,
-    observer: &mut dyn Observer,
+    callbacks: &mut dyn Callbacks,
     provenance: impl FnOnce(usize) -> Provenance,
-) -> Result<(), RunError> {
+) -> Result<(), Interrupted> {
     let results = Results { plan, groups };
     let mut finishing = folder.finishing()?;
     let file = finishing.begin(TRIALS)?;
@@ -43,11 +43,11 @@ pub fn finish(
     let file = finishing.begin(EVALUATIONS)?;
     let mut evaluations = TableWriter::new(&folder.dir().join(EVALUATIONS), file)?;
     let (mut failures, mut examples) = (Vec::new(), Vec::new());
-    let learners = plan.arms.len() * plan.seeds.len();
+    let all = plan.arms.iter().map(trials_of).sum::<u64>() * plan.seeds.len() as u64;
     for arm in 0..plan.arms.len() {
         for seed in &plan.seeds {
-            if observer.stop() {
-                return Err(RunError::Stopped { dir: folder.dir().into(), finished: learners, learners });
+            if callbacks.progress(all) == Signal::Stop {
+                return Err(Interrupted::Stopped);
             }
             let id = LearnerId { arm, seed: *seed };
             let Some(result) = parts.result(folder, id)? else {
@@ -59,8 +59,8 @@ pub fn finish(
             results.evaluation_rows(result).try_for_each(|row| evaluations.push(row))?;
             let (name, nets) = results.weights(result)?;
             finishing.add(&name, &nets)?;
-            failures.extend(result.failure.clone());
-            if seed == &plan.seeds[0] && !plan.continues(arm) && result.failure.is_none() {
+            failures.extend(result.divergence.clone());
+            if seed == &plan.seeds[0] && !plan.continues(arm) && result.divergence.is_none() {
                 examples.extend(trajectories(plan, group_of(groups, arm), result));
             }
         }
@@ -84,7 +84,7 @@ pub fn finish(
 /// What the rows and the nets of an experiment are called.
 struct Results<'a> {
     plan: &'a Plan,
-    groups: &'a [Group],
+    groups: &'a [BatchGroup],
 }
 
 impl Results<'_> {
@@ -175,10 +175,10 @@ impl Results<'_> {
         let mut skills = Vec::new();
         for (skill, plan) in arm.skills.iter().zip(&shape.skills) {
             // A mirror image has no nets of its own, nor has what the planner decides.
-            if skill.mirror.is_some() || skill.planned {
+            if skill.mirror.is_some() || skill.oracle {
                 continue;
             }
-            let hidden = skill.learning.hidden as usize;
+            let hidden = skill.params.hidden as usize;
             let inputs = plan.inputs as usize;
             let outputs = plan.outputs as usize;
             let mut written = Vec::new();

@@ -1,22 +1,22 @@
 //! What a world must satisfy as a whole. Every complaint points at the line that has to change.
 
 use super::geometry::distance;
-use super::{Door, ROBOT_RADIUS, Rect, Room, Segment, World};
+use super::{Door, ROBOT_RADIUS, Rect, Room, WallSegment, World};
 use crate::toml::ConfigError;
-use crate::toml::document::Origin;
+use crate::toml::document::SourceSpan;
 use crate::toml::reader::Item;
 use glam::Vec2;
 
 /// Where the parts of a world were written, in the order of the world's own lists.
 #[derive(Debug, Default)]
 pub(super) struct Written {
-    pub(super) doors: Vec<Origin>,
-    pub(super) light: Option<Origin>,
-    pub(super) places: Vec<Origin>,
+    pub(super) doors: Vec<SourceSpan>,
+    pub(super) light: Option<SourceSpan>,
+    pub(super) places: Vec<SourceSpan>,
 }
 
 /// Refuses rooms that share floor, at the later one of the two.
-pub(super) fn overlap(rooms: &[Room], written: &[Origin]) -> Result<(), ConfigError> {
+pub(super) fn overlap(rooms: &[Room], written: &[SourceSpan]) -> Result<(), ConfigError> {
     for (i, (room, origin)) in rooms.iter().zip(written).enumerate() {
         for other in &rooms[..i] {
             let low = room.area.min.max(other.area.min);
@@ -114,7 +114,7 @@ pub(super) fn door(
 }
 
 /// Checks that need the whole world.
-pub(super) fn check(world: &World, written: &Written, whole: &Origin) -> Result<(), ConfigError> {
+pub(super) fn check(world: &World, written: &Written, whole: &SourceSpan) -> Result<(), ConfigError> {
     if world.rooms.is_empty() {
         let hint = "add [[rooms]] with name = \"A\" and box = [0, 0, 360, 420]";
         return Err(whole.file_error("the world has no rooms", hint));
@@ -192,7 +192,7 @@ fn crosses(a: Vec2, b: Vec2, low: Vec2, high: Vec2) -> bool {
 fn light(world: &World, written: &Written) -> Result<(), ConfigError> {
     let (Some(light), Some(origin)) = (&world.light, &written.light) else { return Ok(()) };
     let buried = world.boxes.iter().any(|solid| light.at.cmpgt(solid.min).all() && light.at.cmplt(solid.max).all());
-    let touching = |s: &&Segment| !s.charger && distance(light.at.as_dvec2(), s) < 0.01;
+    let touching = |s: &&WallSegment| !s.charger && distance(light.at.as_dvec2(), s) < 0.01;
     if buried || world.segments.iter().any(|segment| touching(&segment)) {
         let hint = "move it off walls and boxes; only the charger lets light through";
         return Err(origin.error("the light is on or inside something solid, where nothing can see it", hint));

@@ -1,6 +1,6 @@
 //! Distances and lines of sight on the host. Kernels have their own; these place robots and check worlds.
 
-use super::{ROBOT_RADIUS, Rect, Segment, World};
+use super::{ROBOT_RADIUS, Rect, WallSegment, World};
 use glam::{DVec2, Vec2};
 
 impl World {
@@ -36,7 +36,7 @@ impl World {
 }
 
 /// Distance from a point to a segment, inches.
-pub(super) fn distance(point: DVec2, segment: &Segment) -> f64 {
+pub(super) fn distance(point: DVec2, segment: &WallSegment) -> f64 {
     let (a, b) = (segment.a.as_dvec2(), segment.b.as_dvec2());
     let along = b - a;
     let t = ((point - a).dot(along) / along.length_squared()).clamp(0.0, 1.0);

@@ -1,30 +1,19 @@
 //! A world file's text -> a checked [`World`]. All lengths are inches, all angles degrees.
 
 use super::check::{self, Written};
+use super::keys;
 use super::solids::{self, holds};
 use super::{Charger, Door, Light, Pose, Rect, Room, World};
 use crate::layout::{MAX_DOORS, MAX_ROOMS, MAX_SEGMENTS};
-use crate::toml::ConfigError;
 use crate::toml::document::Node;
-use crate::toml::reader::{Item, Table};
-use crate::toml::schema::Bounds;
+use crate::toml::reader::{Item, KeyedTable, TableReader};
+use crate::toml::{ConfigError, Files, OsFiles};
 use glam::Vec2;
 use std::path::Path;
 
-/// Least and largest side of a floor. Ours: cells are packed in 16 bits, and culled lists must stay small.
-const SIDES: Bounds = Bounds::between(48.0, 2000.0);
-/// Largest docking tolerance is a half turn: any contact connects.
-const TOLERANCE: Bounds = Bounds::above(0.0, 180.0);
-/// Docking tolerance if the file has none. Ours.
-const DEFAULT_TOLERANCE: f32 = 30.0;
-/// Light range and radius of the light area.
-const REACH: Bounds = Bounds::above(0.0, 10_000.0);
-/// Radius of the light area if the file has none. Ours.
-const DEFAULT_AREA: f32 = 140.0;
-
 /// Reads and checks a world file; also returns its text.
 pub fn load(path: &Path) -> Result<(World, String), ConfigError> {
-    let text = std::fs::read_to_string(path).map_err(|error| ConfigError::unreadable(path, "world file", &error))?;
+    let text = OsFiles.read(path).map_err(|error| ConfigError::unreadable(path, "world file", &error))?;
     let world = parse(&text, path)?;
     Ok((world, text))
 }
@@ -62,13 +51,13 @@ pub fn parse(text: &str, source: &Path) -> Result<World, ConfigError> {
     Ok(world)
 }
 
-fn size(root: &Table<'_>) -> Result<Vec2, ConfigError> {
+fn size(root: &TableReader<'_>) -> Result<Vec2, ConfigError> {
     let item = root.required("size", "[360, 420]")?;
-    item.numbers_within("[width, height] in inches", SIDES).map(Vec2::from_array)
+    item.numbers_within("[width, height] in inches", keys::SIDES).map(Vec2::from_array)
 }
 
 /// A list that may be missing, with at most `most` items.
-fn listed<'a>(root: &Table<'a>, key: &str, most: usize) -> Result<Vec<Item<'a>>, ConfigError> {
+fn listed<'a>(root: &TableReader<'a>, key: &str, most: usize) -> Result<Vec<Item<'a>>, ConfigError> {
     let Some(item) = root.optional(key) else { return Ok(Vec::new()) };
     let items = item.items()?;
     match items.get(most) {
@@ -100,7 +89,7 @@ fn point(item: &Item<'_>, floor: &Rect) -> Result<Vec2, ConfigError> {
     if holds(floor, point) { Ok(point) } else { Err(outside(item, floor)) }
 }
 
-fn walls(root: &Table<'_>, floor: &Rect) -> Result<Vec<(Vec2, Vec2)>, ConfigError> {
+fn walls(root: &TableReader<'_>, floor: &Rect) -> Result<Vec<(Vec2, Vec2)>, ConfigError> {
     let mut walls = Vec::new();
     for item in listed(root, "walls", MAX_SEGMENTS)? {
         let [x1, y1, x2, y2] = item.numbers::<4>("[x1, y1, x2, y2] in inches")?;
@@ -117,7 +106,7 @@ fn walls(root: &Table<'_>, floor: &Rect) -> Result<Vec<(Vec2, Vec2)>, ConfigErro
     Ok(walls)
 }
 
-fn boxes(root: &Table<'_>, floor: &Rect) -> Result<Vec<Rect>, ConfigError> {
+fn boxes(root: &TableReader<'_>, floor: &Rect) -> Result<Vec<Rect>, ConfigError> {
     listed(root, "boxes", MAX_SEGMENTS)?.iter().map(|item| rect(item, floor)).collect()
 }
 
@@ -130,7 +119,7 @@ fn fresh<'a>(item: &Item<'a>, taken: &[&str]) -> Result<&'a str, ConfigError> {
     Ok(name)
 }
 
-fn rooms(root: &Table<'_>, floor: &Rect) -> Result<Vec<Room>, ConfigError> {
+fn rooms(root: &TableReader<'_>, floor: &Rect) -> Result<Vec<Room>, ConfigError> {
     let mut rooms: Vec<Room> = Vec::new();
     let mut written = Vec::new();
     for item in listed(root, "rooms", MAX_ROOMS)? {
@@ -146,7 +135,7 @@ fn rooms(root: &Table<'_>, floor: &Rect) -> Result<Vec<Room>, ConfigError> {
     Ok(rooms)
 }
 
-fn doors(root: &Table<'_>, rooms: &[Room], written: &mut Written) -> Result<Vec<Door>, ConfigError> {
+fn doors(root: &TableReader<'_>, rooms: &[Room], written: &mut Written) -> Result<Vec<Door>, ConfigError> {
     let mut doors: Vec<Door> = Vec::new();
     let names: Vec<&str> = rooms.iter().map(|room| room.name.as_str()).collect();
     for item in listed(root, "doors", MAX_DOORS)? {
@@ -162,37 +151,39 @@ fn doors(root: &Table<'_>, rooms: &[Room], written: &mut Written) -> Result<Vec<
         let centre = table.required("centre", "[64, 204]")?;
         let at = Vec2::from_array(centre.numbers::<2>("[x, y] in inches")?);
         let width = table.required("width", "50")?;
-        let door = check::door(name, rooms, joined, (at, width.number(Bounds::above(0.0, 2000.0))?));
+        let table = KeyedTable(table);
+        let door = check::door(name, rooms, joined, (at, table.number(&keys::DOOR_WIDTH)?));
         let door = door.map_err(|fault| fault.place(&pair, &centre, &width))?;
         written.doors.push(centre.origin().clone());
         doors.push(door);
-        table.finish()?;
+        table.0.finish()?;
     }
     Ok(doors)
 }
 
-fn charger(root: &Table<'_>, floor: &Rect) -> Result<Option<Charger>, ConfigError> {
+fn charger(root: &TableReader<'_>, floor: &Rect) -> Result<Option<Charger>, ConfigError> {
     let Some(item) = root.optional("charger") else { return Ok(None) };
-    let table = item.table()?;
-    let area = rect(&table.required("box", "[0, 0, 24, 24]")?, floor)?;
-    let tolerance = table.optional("tolerance").map_or(Ok(DEFAULT_TOLERANCE), |item| item.number(TOLERANCE))?;
-    table.finish()?;
+    let table = KeyedTable(item.table()?);
+    let area = rect(&table.0.required("box", "[0, 0, 24, 24]")?, floor)?;
+    let tolerance = table.number_or_default(&keys::CHARGER_TOLERANCE)?;
+    table.0.finish()?;
     Ok(Some(Charger { area, tolerance }))
 }
 
-fn light(root: &Table<'_>, floor: &Rect, written: &mut Written) -> Result<Option<Light>, ConfigError> {
+fn light(root: &TableReader<'_>, floor: &Rect, written: &mut Written) -> Result<Option<Light>, ConfigError> {
     let Some(item) = root.optional("light") else { return Ok(None) };
-    let table = item.table()?;
-    let place = table.required("at", "[12, 12]")?;
+    let table = KeyedTable(item.table()?);
+    let place = table.0.required("at", "[12, 12]")?;
     let at = point(&place, floor)?;
     written.light = Some(place.origin().clone());
-    let range = table.required("range", "140")?.number(REACH)?;
-    let area = table.optional("area").map_or(Ok(DEFAULT_AREA), |item| item.number(REACH))?;
-    table.finish()?;
+    table.required(&keys::LIGHT_RANGE, "140")?;
+    let range = table.number(&keys::LIGHT_RANGE)?;
+    let area = table.number_or_default(&keys::LIGHT_AREA)?;
+    table.0.finish()?;
     Ok(Some(Light { at, range, area }))
 }
 
-fn places(root: &Table<'_>, floor: &Rect, written: &mut Written) -> Result<Vec<(String, Pose)>, ConfigError> {
+fn places(root: &TableReader<'_>, floor: &Rect, written: &mut Written) -> Result<Vec<(String, Pose)>, ConfigError> {
     let Some(item) = root.optional("places") else { return Ok(Vec::new()) };
     let mut places = Vec::new();
     for (entry, item) in item.table()?.all() {
@@ -209,7 +200,7 @@ fn places(root: &Table<'_>, floor: &Rect, written: &mut Written) -> Result<Vec<(
     Ok(places)
 }
 
-fn regions(root: &Table<'_>, floor: &Rect) -> Result<Vec<(String, Rect)>, ConfigError> {
+fn regions(root: &TableReader<'_>, floor: &Rect) -> Result<Vec<(String, Rect)>, ConfigError> {
     let mut regions: Vec<(String, Rect)> = Vec::new();
     for item in listed(root, "regions", 64)? {
         let table = item.table()?;

@@ -4,6 +4,7 @@
 
 mod check;
 pub mod geometry;
+pub mod keys;
 pub mod load;
 pub mod regions;
 mod solids;
@@ -93,7 +94,7 @@ pub struct Light {
 
 /// A straight piece of anything solid.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Segment {
+pub struct WallSegment {
     /// One end.
     pub a: Vec2,
     /// The other end.
@@ -111,7 +112,7 @@ pub struct World {
     pub size: Vec2,
     /// Everything solid: the outer walls first, then walls, boxes and the charger in the file's order. Edges of
     /// boxes that nothing can touch or see, against the outer walls or inside other boxes, are left out.
-    pub segments: Vec<Segment>,
+    pub segments: Vec<WallSegment>,
     /// Solid boxes in the file's order, without the charger: for drawing and for finding free space.
     pub boxes: Vec<Rect>,
     /// At least one.

@@ -1,6 +1,6 @@
 //! From walls and boxes to the segments that sensors and bodies meet.
 
-use super::{Charger, Rect, Segment};
+use super::{Charger, Rect, WallSegment};
 use glam::Vec2;
 
 /// Everything solid, without the sides of boxes that nothing can touch or see.
@@ -9,12 +9,12 @@ pub(super) fn segments(
     walls: &[(Vec2, Vec2)],
     boxes: &[Rect],
     charger: Option<&Charger>,
-) -> Vec<Segment> {
-    let outer = sides(floor).map(|(a, b)| Segment { a, b, charger: false });
-    let walls = walls.iter().map(|&(a, b)| Segment { a, b, charger: false });
-    let boxed = boxes.iter().flat_map(sides).map(|(a, b)| Segment { a, b, charger: false });
-    let charger = charger.iter().flat_map(|c| sides(&c.area)).map(|(a, b)| Segment { a, b, charger: true });
-    let seen = |segment: &Segment| !hidden(segment, floor, boxes);
+) -> Vec<WallSegment> {
+    let outer = sides(floor).map(|(a, b)| WallSegment { a, b, charger: false });
+    let walls = walls.iter().map(|&(a, b)| WallSegment { a, b, charger: false });
+    let boxed = boxes.iter().flat_map(sides).map(|(a, b)| WallSegment { a, b, charger: false });
+    let charger = charger.iter().flat_map(|c| sides(&c.area)).map(|(a, b)| WallSegment { a, b, charger: true });
+    let seen = |segment: &WallSegment| !hidden(segment, floor, boxes);
     outer.into_iter().chain(walls).chain(boxed.filter(seen)).chain(charger.filter(seen)).collect()
 }
 
@@ -30,7 +30,7 @@ pub(super) fn sides(rect: &Rect) -> [(Vec2, Vec2); 4] {
 }
 
 /// Whether a side of a box has the outside of the floor, or the inside of a single other box, all along its outer face.
-fn hidden(side: &Segment, floor: &Rect, boxes: &[Rect]) -> bool {
+fn hidden(side: &WallSegment, floor: &Rect, boxes: &[Rect]) -> bool {
     // Outward of a counter-clockwise side, far less than any real distance between two edges.
     let outward = (side.b - side.a).perp().normalize() * -0.01;
     let (a, b) = (side.a + outward, side.b + outward);

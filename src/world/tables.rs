@@ -2,7 +2,7 @@
 
 use super::geometry::{distance, touch};
 use super::solids::sides;
-use super::{Door, ROBOT_RADIUS, Segment, World};
+use super::{Door, ROBOT_RADIUS, WallSegment, World};
 use crate::layout::{self, Area, WorldUniform};
 use bytemuck::Zeroable;
 use glam::{DVec2, Vec2};
@@ -72,12 +72,12 @@ fn add_lists(words: &mut Vec<u32>, lists: impl ExactSizeIterator<Item = Vec<u32>
     starts as u32
 }
 
-fn indices(world: &World, wanted: impl Fn(&Segment) -> bool) -> Vec<u32> {
+fn indices(world: &World, wanted: impl Fn(&WallSegment) -> bool) -> Vec<u32> {
     (0..).zip(&world.segments).filter(|(_, segment)| wanted(segment)).map(|(i, _)| i).collect()
 }
 
 /// Whether a segment can be the nearest on some ray out of the cell with this left bottom corner.
-fn can_be_heard(world: &World, corner: DVec2, segment: &Segment) -> bool {
+fn can_be_heard(world: &World, corner: DVec2, segment: &WallSegment) -> bool {
     square_distance(corner, segment) <= LIST_REACH
         && !turned_away(world, corner, segment)
         && !world.segments.iter().any(|other| covers(other, corner, segment))
@@ -85,7 +85,7 @@ fn can_be_heard(world: &World, corner: DVec2, segment: &Segment) -> bool {
 
 /// All segments that can stand between a robot in the cell and the light, or one that always does.
 fn hiding(world: &World, corner: DVec2, light: Vec2) -> Vec<u32> {
-    let spot = Segment { a: light, b: light, charger: false };
+    let spot = WallSegment { a: light, b: light, charger: false };
     let mut between = indices(world, |segment| !segment.charger && stands_between(segment, corner, light.as_dvec2()));
     if let Some(cover) = between.iter().position(|i| covers(&world.segments[*i as usize], corner, &spot)) {
         between = vec![between[cover]];
@@ -94,7 +94,7 @@ fn hiding(world: &World, corner: DVec2, light: Vec2) -> Vec<u32> {
 }
 
 /// Whether a segment comes near any straight line from the cell to the light: whether no axis separates the two.
-fn stands_between(segment: &Segment, corner: DVec2, light: DVec2) -> bool {
+fn stands_between(segment: &WallSegment, corner: DVec2, light: DVec2) -> bool {
     let ends = [segment.a.as_dvec2(), segment.b.as_dvec2()];
     let [c0, c1, c2, c3] = corners(corner);
     let hull = [c0, c1, c2, c3, light];
@@ -135,7 +135,7 @@ fn plan(world: &World) -> WorldUniform {
     plan
 }
 
-fn segment(segment: &Segment) -> layout::Segment {
+fn segment(segment: &WallSegment) -> layout::Segment {
     let along = segment.b.as_dvec2() - segment.a.as_dvec2();
     let unit = along / along.length();
     layout::Segment {
@@ -168,7 +168,7 @@ fn corners(corner: DVec2) -> [DVec2; 4] {
 
 /// Whether a segment is the side of a box and the whole cell lies behind it. A ray out of the cell has then come
 /// through another side of the box before.
-fn turned_away(world: &World, corner: DVec2, segment: &Segment) -> bool {
+fn turned_away(world: &World, corner: DVec2, segment: &WallSegment) -> bool {
     let (a, b) = (segment.a.as_dvec2(), segment.b.as_dvec2());
     let solids = world.boxes.iter().chain(world.charger.iter().map(|charger| &charger.area));
     let solid_on_the_left = solids.flat_map(sides).any(|side| side == (segment.a, segment.b));
@@ -178,7 +178,7 @@ fn turned_away(world: &World, corner: DVec2, segment: &Segment) -> bool {
 /// Whether every straight line from the cell to `segment` crosses `cover`, clear of its ends.
 ///
 /// Cell and segment are convex: it is enough that the lines between their corners do.
-fn covers(cover: &Segment, corner: DVec2, segment: &Segment) -> bool {
+fn covers(cover: &WallSegment, corner: DVec2, segment: &WallSegment) -> bool {
     let (a, b) = (cover.a.as_dvec2(), cover.b.as_dvec2());
     let length = a.distance(b);
     let along = (b - a) / length;
@@ -195,7 +195,7 @@ fn covers(cover: &Segment, corner: DVec2, segment: &Segment) -> bool {
 }
 
 /// Distance from a segment to the list cell with this left bottom corner.
-fn square_distance(corner: DVec2, segment: &Segment) -> f64 {
+fn square_distance(corner: DVec2, segment: &WallSegment) -> f64 {
     let (a, b) = (segment.a.as_dvec2(), segment.b.as_dvec2());
     let far = corner + LIST_CELL;
     let corners = corners(corner);

@@ -134,7 +134,7 @@ fn replay_again(path: &Path) {
                 let nets: Vec<_> = (0..children).map(net).collect();
                 let greatest = nets.iter().map(|net| net.1).fold(-2.0, f64::max);
                 let future = (1.0 - number("lambda")) * best + number("lambda") * back;
-                let limit = number("target_limit");
+                let limit = number("target_clip");
                 let goal = (reward[row] + number("gamma") * future).clamp(-limit, limit);
                 let taken = child[row] as usize;
                 let (units, q) = &nets[taken];

@@ -10,14 +10,15 @@ use skilltree::env::workgroup::CohortData;
 use skilltree::layout::phase::{PHASE_FAILED, PHASE_REPLAY};
 use skilltree::layout::{Episode, LESSON_HEADER, LearnerState, Robot};
 use skilltree::qnet::forward::net_of;
-use skilltree::run_folder::failures::{Failure, Number, failures_of};
+use skilltree::run_folder::failures::{Divergence, Number, failures_of};
 use skilltree::run_folder::tables::{EVALUATIONS, TRIALS, read_evaluations, read_trials};
 use skilltree::run_folder::{FinishedRun, Provenance, RunFolder};
 use skilltree::train::batch::train;
-use skilltree::train::batch_group::{Group, groups};
-use skilltree::train::divergence::failure_of;
+use skilltree::train::batch_group::{BatchGroup, groups};
+use skilltree::train::callbacks::{Callbacks, Signal};
+use skilltree::train::divergence::divergence_of;
 use skilltree::train::result::{LearnerResult, encode};
-use skilltree::train::run::{Observer, Options, run};
+use skilltree::train::run::{Options, run};
 use std::ops::Range;
 use std::path::Path;
 use tempfile::TempDir;
@@ -91,15 +92,15 @@ pub(crate) fn plan(seeds: &str) -> Plan {
         "learning.replays=3",
         "evaluate.at=[0, 2]",
         "evaluate.episodes=2",
-        "teacher.episodes=2",
-        "teacher.bank=16",
+        "teacher.eval_episodes=2",
+        "teacher.lessons=16",
     ];
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/docking.toml");
     let set = set.iter().map(|key| (*key).to_owned()).collect();
     load(&path, &Overrides { set, seeds: Some(seeds.to_owned()), ..Overrides::default() }).expect("a plan")
 }
 
-pub(crate) fn only_group(plan: &Plan) -> Group {
+pub(crate) fn only_group(plan: &Plan) -> BatchGroup {
     let mut groups = groups(plan).expect("a group");
     assert_eq!(groups.len(), 1);
     groups.remove(0)
@@ -110,13 +111,17 @@ fn cpu() -> Box<dyn Backend> {
 }
 
 /// Word of a learner's nets at which the weight of an input to a hidden unit of a child's net stands.
-fn weight(group: &Group, child: usize, input: usize, unit: usize) -> usize {
+fn weight(group: &BatchGroup, child: usize, input: usize, unit: usize) -> usize {
     let skill = &group.shape.skills[0];
     net_of(skill, 0, child as u32) as usize + 32 * input + unit
 }
 
+fn bytes(result: &LearnerResult) -> Vec<u8> {
+    encode(std::slice::from_ref(result)).expect("bytes")
+}
+
 /// Trains the plan's learners with one of them poisoned before its third trial.
-fn poisoned(plan: &Plan, group: &Group, inner: Box<dyn Backend>, victim: usize) -> (Vec<LearnerResult>, Cohort) {
+fn poisoned(plan: &Plan, group: &BatchGroup, inner: Box<dyn Backend>, victim: usize) -> (Vec<LearnerResult>, Cohort) {
     let word = weight(group, 3, 7, 5);
     let mut backend = Poisoner { inner, victim, word, value: f32::NAN, before: Some(2) };
     let results = train(plan, group, &group.learners(plan), &|_| None, None, &mut backend, &mut ()).expect("it trains");
@@ -126,7 +131,7 @@ fn poisoned(plan: &Plan, group: &Group, inner: Box<dyn Backend>, victim: usize) 
 }
 
 /// The first replayed step after the poison, read from the learner's memory as the record says it is laid out.
-fn check(plan: &Plan, group: &Group, memory: &Cohort, failure: &Failure, victim: usize) {
+fn check(plan: &Plan, group: &BatchGroup, memory: &Cohort, failure: &Divergence, victim: usize) {
     assert_eq!((failure.arm.as_str(), failure.seed, failure.point), ("untaught-adam", plan.seeds[victim], 0));
     // Two trials finished, and the third acted out.
     assert_eq!((failure.skill.as_str(), failure.trial), ("dock", 2));
@@ -158,15 +163,15 @@ fn one_poisoned_learner_of_4096_is_named_and_the_others_do_not_notice() {
     let plan = plan("0..4096");
     let group = only_group(&plan);
     let sound = train(&plan, &group, &group.learners(&plan), &|_| None, None, &mut *cpu(), &mut ()).expect("it trains");
-    assert!(sound.iter().all(|result| result.failure.is_none()));
+    assert!(sound.iter().all(|result| result.divergence.is_none()));
     let victim = 2731;
     let (results, memory) = poisoned(&plan, &group, cpu(), victim);
     for (index, (own, other)) in sound.iter().zip(&results).enumerate().filter(|(index, _)| *index != victim) {
-        assert!(other.failure.is_none(), "{index}");
-        assert!(encode(std::slice::from_ref(own)) == encode(std::slice::from_ref(other)), "{index}");
+        assert!(other.divergence.is_none(), "{index}");
+        assert!(bytes(own) == bytes(other), "{index}");
     }
     let failed = &results[victim];
-    check(&plan, &group, &memory, failed.failure.as_ref().expect("a failure"), victim);
+    check(&plan, &group, &memory, failed.divergence.as_ref().expect("a failure"), victim);
     // What was before stays, what would have come after is absent.
     assert_eq!(failed.tests[..], sound[victim].tests[..2]);
     assert_eq!(sound[victim].tests.len(), 3);
@@ -180,11 +185,11 @@ fn a_gpu_finds_the_same_failure() {
     let group = only_group(&plan);
     let gpu = GpuBackend::new(&GpuOptions::default()).expect("an adapter, if only a software one");
     let (found, memory) = poisoned(&plan, &group, Box::new(gpu), 4);
-    check(&plan, &group, &memory, found[4].failure.as_ref().expect("a failure"), 4);
+    check(&plan, &group, &memory, found[4].divergence.as_ref().expect("a failure"), 4);
     let (expected, _) = poisoned(&plan, &group, cpu(), 4);
     for (index, (found, expected)) in found.iter().zip(&expected).enumerate() {
-        assert_eq!(found.failure, expected.failure, "{index}");
-        assert!(encode(std::slice::from_ref(found)) == encode(std::slice::from_ref(expected)), "{index}");
+        assert_eq!(found.divergence, expected.divergence, "{index}");
+        assert!(bytes(found) == bytes(expected), "{index}");
     }
 }
 
@@ -218,8 +223,8 @@ fn what_the_last_update_spoils_is_found_before_the_test() {
         assert_eq!((memory.states[0].phase, memory.states[0].trial), (PHASE_FAILED, 2));
         assert_ne!(memory.states[1].phase, PHASE_FAILED);
         let ids = group.learners(&plan);
-        assert_eq!(failure_of(&plan, memory, 1, ids[1]), None);
-        let failure = failure_of(&plan, memory, 0, ids[0]).expect("a failure");
+        assert_eq!(divergence_of(&plan, memory, 1, ids[1]), None);
+        let failure = divergence_of(&plan, memory, 0, ids[0]).expect("a failure");
         assert!(failure.what.contains("weight") && failure.trial == 2, "{failure:?}");
         let found = failure.weight.expect("a weight");
         assert_eq!((found.tensor, found.index), (format!("dock.q.{tensor}"), index));
@@ -231,16 +236,16 @@ fn what_the_last_update_spoils_is_found_before_the_test() {
 
 #[derive(Default)]
 struct Listener {
-    failed: Vec<Failure>,
+    diverged: Vec<Divergence>,
 }
 
-impl Observer for Listener {
-    fn trials(&mut self, _finished: u64) {}
+impl Callbacks for Listener {
+    fn progress(&mut self, _trials: u64) -> Signal {
+        Signal::Continue
+    }
 
-    fn committed(&mut self, _finished: usize) {}
-
-    fn failed(&mut self, failure: &Failure) {
-        self.failed.push(failure.clone());
+    fn diverged(&mut self, divergence: &Divergence) {
+        self.diverged.push(divergence.clone());
     }
 }
 
@@ -260,7 +265,7 @@ fn a_run_lists_its_failures() {
     let finished = FinishedRun::read(&dir).expect("complete");
     let failures = failures_of(&finished).expect("a list");
     assert_eq!((failures.len(), failures[0].seed, failures[0].trial), (1, 5, 2));
-    assert_eq!(failures, listener.failed);
+    assert_eq!(failures, listener.diverged);
     let notes = &finished.manifest().provenance.notes;
     assert!(notes.values().any(|note| note.contains("1 of 6") && note.contains("failures.json")), "{notes:?}");
     let (_, rows) = read_evaluations(&dir.join(EVALUATIONS)).expect("tests");

@@ -16,6 +16,8 @@ use skilltree::train::batch::train;
 use skilltree::train::checkpoint::Checkpoint;
 use skilltree::train::result::{LearnerResult, decode, encode};
 use skilltree::train::run::RunError;
+use snap::{read::FrameDecoder, write::FrameEncoder};
+use std::io::{Read, Write};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -28,21 +30,42 @@ fn results() -> Vec<LearnerResult> {
     train(&experiment.plan, group, &ids, &|_| None, None, &mut backend, &mut ()).unwrap()
 }
 
-/// The content of a part: what is read is written back as it was.
+fn bytes(results: &[LearnerResult]) -> Vec<u8> {
+    encode(results).unwrap()
+}
+
+/// Half of the inputs are altered before they are compressed: checksums hold, and the reader behind them is reached.
+fn compressed(random: &mut mutate::StepRandom, seeds: &[Vec<u8>]) -> Vec<u8> {
+    if random.below(2) == 0 {
+        return mutate::bytes(random, seeds);
+    }
+    let plain = |seed: &Vec<u8>| {
+        let mut plain = Vec::new();
+        FrameDecoder::new(&seed[..]).read_to_end(&mut plain).unwrap();
+        plain
+    };
+    let mut compressed = FrameEncoder::new(Vec::new());
+    compressed.write_all(&mutate::bytes(random, &seeds.iter().map(plain).collect::<Vec<_>>())).unwrap();
+    compressed.into_inner().unwrap()
+}
+
+/// The content of a part: what is read is read again when it has been written.
 #[test]
 fn parts() {
-    let seeds = [encode(&results()), encode(&results()[..1]), encode(&[])];
+    let seeds = [bytes(&results()), bytes(&results()[..1]), bytes(&[])];
     let read = |input: &[u8]| match decode(input) {
-        Ok(results) if encode(&results) != input => Err("is not what was read".to_owned()),
-        other => Ok(other.is_ok()),
+        // Results with NaN are equal to none: their bytes tell.
+        Ok(results) if decode(&bytes(&results)).is_ok_and(|again| bytes(&again) == bytes(&results)) => Ok(true),
+        Ok(_) => Err("is not what was read".to_owned()),
+        Err(_) => Ok(false),
     };
-    campaign("parts", |random| mutate::bytes(random, &seeds), read).conclude("parts");
+    campaign("parts", |random| compressed(random, &seeds), read).conclude("parts");
 }
 
 /// A part whose frame vouches for nonsense: whoever goes on from there refuses it, or takes what can be taken.
 #[test]
 fn vouched_parts() {
-    let seeds = [encode(&results()), encode(&results()[..1])];
+    let seeds = [bytes(&results()), bytes(&results()[..1])];
     let experiment = experiment();
     let read = |input: &[u8]| {
         let disk: Arc<dyn Disk> = Arc::new(Memory::default());
@@ -51,7 +74,7 @@ fn vouched_parts() {
         drop(run);
         Ok(experiment.run(&disk, &folder()).is_ok())
     };
-    campaign("vouched_parts", |random| mutate::bytes(random, &seeds), read).conclude("vouched_parts");
+    campaign("vouched_parts", |random| compressed(random, &seeds), read).conclude("vouched_parts");
 }
 
 /// The content of a checkpoint, as if its frame vouched for it.
@@ -63,7 +86,7 @@ fn checkpoints() {
     let seed = experiment.open(&disk, &folder()).unwrap().read_checkpoint().unwrap();
     let seeds = [seed.expect("a checkpoint")];
     let read = |input: &[u8]| Ok(Checkpoint::read(input, &experiment.plan, &experiment.groups).is_ok());
-    campaign("checkpoints", |random| mutate::bytes(random, &seeds), read).conclude("checkpoints");
+    campaign("checkpoints", |random| compressed(random, &seeds), read).conclude("checkpoints");
 }
 
 #[test]

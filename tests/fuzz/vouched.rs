@@ -4,7 +4,7 @@ use super::campaign::campaign;
 use super::memory::Memory;
 use super::within::folder;
 use super::{file, files, mutate, somewhere};
-use skilltree::report::{gallery, page, results::Results, text};
+use skilltree::report::{self, ReportError};
 use skilltree::run_folder::file_system::Disk;
 use skilltree::run_folder::manifest::FileDigest;
 use skilltree::run_folder::tables::{parse_evaluations, parse_trials, write_table};
@@ -87,7 +87,7 @@ fn nonsense(random: &mut mutate::StepRandom) -> BTreeMap<PathBuf, Vec<u8>> {
     files
 }
 
-/// The whole report, but for turning figures into pixels.
+/// The whole report.
 #[test]
 fn reports() {
     let make = |random: &mut mutate::StepRandom| random.draw_step().to_le_bytes().to_vec();
@@ -95,10 +95,11 @@ fn reports() {
         let mut random = mutate::StepRandom::new(u64::from_le_bytes(input.try_into().unwrap()));
         let disk: Arc<dyn Disk> = Arc::new(Memory::of(&nonsense(&mut random)));
         let Ok(run) = FinishedRun::read_on(disk, &folder()) else { return Ok(false) };
-        let Ok(results) = Results::read(&run) else { return Ok(false) };
-        let Ok(drawings) = gallery::draw(&run, &results) else { return Ok(false) };
-        text::table(&results.summary, &results.claims);
-        page::render(&run, &results, &drawings).map_err(|error| format!("no page: {error}"))?;
+        match report::render(&run) {
+            Ok(_) => {}
+            Err(error @ ReportError::Page(_)) => return Err(format!("no page: {error}")),
+            Err(_) => return Ok(false),
+        }
         Ok(true)
     };
     campaign("reports", make, read).conclude("reports");

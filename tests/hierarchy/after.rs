@@ -13,10 +13,10 @@ use skilltree::layout::{Episode, LESSON_HEADER, RECORD_WORDS, VALUE_WORD};
 use skilltree::learn::lesson::ENDED;
 use skilltree::run_folder::weights::read_weights;
 use skilltree::run_folder::{Provenance, RunFolder, Sums};
-use skilltree::train::batch::{train, train_stem};
-use skilltree::train::batch_group::Group;
+use skilltree::train::batch::{pretrain, train};
+use skilltree::train::batch_group::BatchGroup;
 use skilltree::train::result::LearnerResult;
-use skilltree::train::run::{Observer, Options, run};
+use skilltree::train::run::{Options, run};
 use skilltree::train::trajectories::trajectories;
 use tempfile::TempDir;
 
@@ -25,10 +25,10 @@ fn number(plan: &Plan, name: &str) -> usize {
 }
 
 /// All that the plan's only arm leaves, and its learners' memory.
-fn trained(plan: &Plan, group: &Group) -> (Vec<LearnerResult>, Cohort) {
+fn trained(plan: &Plan, group: &BatchGroup) -> (Vec<LearnerResult>, Cohort) {
     let mut backend = CpuBackend::new(2, None).expect("threads");
     let ids = group.learners(plan);
-    let stems = train_stem(plan, group, &ids, None, &mut backend, &mut ()).expect("the CPU does not fail");
+    let stems = pretrain(plan, group, &ids, None, &mut backend, &mut ()).expect("the CPU does not fail");
     let stem_of = |id| stems.iter().find(|stem| stem.id == id);
     let results = train(plan, group, &ids, &stem_of, None, &mut backend, &mut ()).expect("the CPU does not fail");
     let memory = backend.memory().expect("memory").clone();
@@ -42,11 +42,11 @@ fn seen(plan: &Plan, cohort: &Cohort, learner: usize, skill: usize) -> Vec<(f64,
     let (own, shape) = (&plan.arms[0].skills[skill], &cohort.shared.skills[skill]);
     let nets = Nets64::of(&cohort.nets[learner * cohort.nets_stride..][..cohort.nets_stride], shape);
     let memory = &cohort.lessons[learner * cohort.lessons_stride + shape.memory_offset as usize..];
-    let kept = own.trials.min(own.learning.memory);
-    let latest = (0..own.trials).rev().take(kept.div_ceil(2) as usize);
+    let kept = own.params.trials.min(own.params.replay_capacity);
+    let latest = (0..own.params.trials).rev().take(kept.div_ceil(2) as usize);
     let mut seen = Vec::new();
     for trial in latest {
-        let slot = trial % own.learning.memory;
+        let slot = trial % own.params.replay_capacity;
         let lesson = &memory[(slot * shape.lesson_stride) as usize..][..shape.lesson_stride as usize];
         for record in lesson[LESSON_HEADER..].chunks(shape.record_words as usize).take(lesson[0] as usize) {
             seen.push((most(nets.values(&inputs64(own, 2, record))), lesson[1] == ENDED));
@@ -89,20 +89,13 @@ fn direct(seen: &[(f64, bool)], probability: f64) -> f64 {
     (((probability / (1.0 - probability)).ln() - best_offset(slope)) / slope).clamp(-1.0, 1.0)
 }
 
-struct Nobody;
-
-impl Observer for Nobody {
-    fn trials(&mut self, _finished: u64) {}
-    fn committed(&mut self, _finished: usize) {}
-}
-
 #[test]
 fn learned_thresholds_are_those_of_a_direct_fit() {
     // Memory for fewer trials than there are, so that slots are used twice.
     let set = [
         "skill.go-home.applicable={ dock = 'learned(0.7)', leave = 'learned' }",
         "skill.go-home.applicability=true",
-        "skill.dock.learning={ memory = 30 }",
+        "skill.dock.learning={ replay_capacity = 30 }",
         "skill.go-home.trials=12",
         "seeds='0..3'",
     ];
@@ -156,8 +149,7 @@ fn learned_thresholds_are_those_of_a_direct_fit() {
     let dir = parent.path().join("run");
     let worlds: Vec<(&str, &str)> = plan.worlds.iter().map(|w| (w.file.as_str(), w.text.as_str())).collect();
     let folder = RunFolder::open(&dir, &plan.resolved, &worlds).expect("a run folder");
-    run(&plan, &[group], folder, &mut backend, Options::default(), Provenance::default(), &mut Nobody)
-        .expect("it runs");
+    run(&plan, &[group], folder, &mut backend, Options::default(), Provenance::default(), &mut ()).expect("it runs");
     for (seed, result) in results.iter().enumerate() {
         let path = dir.join(format!("skills/base-{seed}.safetensors"));
         let (nets, metadata) = read_weights(&std::fs::read(&path).expect("weights"), &path).expect("weights");
@@ -200,8 +192,8 @@ fn alterations_test_what_was_learned_elsewhere() {
     let moved = folder.path().join("moved.toml");
     std::fs::write(&moved, plain.replace("[0, 30, 20, 70]", "[136, 30, 156, 70]")).expect("a file");
     let text = format!(
-        "[alter.same]\nnoise = {{}}\n[alter.loud]\nnoise = {{ sonar = 0.5, compass = 90.0, kind = 'uniform' }}\n\
-         [alter.moved]\nworld = {moved:?}\nnoise = {{ light = 0.0 }}\n"
+        "[transfer.same]\nnoise = {{}}\n[transfer.loud]\nnoise = {{ sonar = 0.5, compass = 90.0, kind = 'uniform' }}\n\
+         [transfer.moved]\nworld = {moved:?}\nnoise = {{ light = 0.0 }}\n"
     );
     let plan = short(&text, &["evaluate.episodes=30", "seeds='0..2'"]);
     let group = only_group(&plan);

@@ -84,12 +84,16 @@ fn bench(backup: Backup, shared_net: bool, more: &[&str]) -> Bench {
         format!("skill.top.learning.shared_net={shared_net}"),
     ];
     let mut set: Vec<&str> = own.iter().map(String::as_str).collect();
-    set.extend(["skill.top.learning.optimiser=sgd", "skill.top.learning.rate=0.5", "skill.top.learning.momentum=0.0"]);
+    set.extend([
+        "skill.top.learning.optimiser=sgd",
+        "skill.top.learning.learning_rate=0.5",
+        "skill.top.learning.momentum=0.0",
+    ]);
     set.extend(more);
     let mut bench = Bench::new(TREE, &set);
     let root = bench.skill("top");
     let params = &mut bench.params[root];
-    (params.rate, params.rate_fall, params.beta1) = (HARDLY, 0.0, 0.0);
+    (params.learning_rate, params.learning_rate_fall, params.beta1) = (HARDLY, 0.0, 0.0);
     params.value_scale = 1.0 / 64.0;
     bench.state.skill = root as u32;
     bench
@@ -156,9 +160,9 @@ fn constant(backup: Backup, shared_net: bool) -> Bench {
         bench.nets[biases + child - net] = worth.atanh();
     }
     let params = &mut bench.params[root];
-    (params.gamma, params.lambda, params.target_limit) = (0.5, 0.5, 0.875);
+    (params.gamma, params.lambda, params.target_clip) = (0.5, 0.5, 0.875);
     (params.policy_threshold, params.inverse_temperature_start, params.inverse_temperature_slope) = (0.0, 4.0, 0.0);
-    (params.inner_share, params.timeout_terminal) = (0.0, 0);
+    (params.intra_skill_share, params.timeout_terminal) = (0.0, 0);
     bench
 }
 
@@ -242,7 +246,7 @@ fn seven_steps_by_hand() {
 
         // Those between are learned with what remains from there on.
         let mut bench = constant(Backup::Decisions, shared_net);
-        bench.params[root].inner_share = 1.0;
+        bench.params[root].intra_skill_share = 1.0;
         let mixed5 = 0.5 * 0.5 + 0.5 * w5;
         let inner = [w0, -0.25 + 0.5 * (0.25 + 0.5 * w2), w2, 0.5 + 0.25 * mixed5, 0.5 * mixed5, w5, 0.75];
         check("decisions, all steps", &replay(&mut bench, &seven(ENDED)), &all(inner));
@@ -256,11 +260,11 @@ fn seven_steps_by_hand() {
         let decided = cut(Backup::Decisions)[5].expect("learned");
         assert!((decided - 0.5 * 0.875).abs() < 1.0e-6, "{decided}");
         let mut wide = constant(Backup::Steps, shared_net);
-        wide.params[root].target_limit = 4.0;
+        wide.params[root].target_clip = 4.0;
         let beyond = replay(&mut wide, &seven(CUT))[6].expect("learned");
         assert!((beyond - (0.75 + 0.5 * 0.25)).abs() < 1.0e-6, "{beyond}");
         let mut wide = constant(Backup::Persistent, shared_net);
-        wide.params[root].target_limit = 4.0;
+        wide.params[root].target_clip = 4.0;
         let beyond = replay(&mut wide, &seven(CUT))[6].expect("learned");
         assert!((beyond - 1.0).abs() < 1.0e-6, "{beyond}");
         let mut terminal = constant(Backup::Decisions, shared_net);
@@ -379,12 +383,12 @@ fn targets_are_those_of_the_definitions() {
             inverse_temperature: 6.0,
             least: [0.0, 0.02, 0.1][round / 18 % 3],
         };
-        let inner_share: f64 = [0.0, 1.0, 0.5][round / 54 % 3];
+        let intra_skill_share: f64 = [0.0, 1.0, 0.5][round / 54 % 3];
         let params = &mut bench.params[root];
         (params.gamma, params.lambda) = (terms.gamma as f32, terms.lambda as f32);
-        (params.advantage_scale, params.target_limit) = (terms.stretch as f32, 1.0e6);
+        (params.advantage_scale, params.target_clip) = (terms.stretch as f32, 1.0e6);
         (params.inverse_temperature_start, params.inverse_temperature_slope) = (terms.inverse_temperature as f32, 0.0);
-        (params.policy_threshold, params.inner_share) = (terms.least as f32, inner_share as f32);
+        (params.policy_threshold, params.intra_skill_share) = (terms.least as f32, intra_skill_share as f32);
         params.timeout_terminal = u32::from(round % 5 == 0);
         bench.state.trial = round as u32;
 
@@ -416,14 +420,14 @@ fn targets_are_those_of_the_definitions() {
             match found {
                 Some(found) => {
                     assert!((found - target).abs() < 2.0e-5 * (1.0 + target.abs()), "{}", says());
-                    assert!(*policy && !(inner && inner_share == 0.0), "{}", says());
+                    assert!(*policy && !(inner && intra_skill_share == 0.0), "{}", says());
                     learned += 1;
-                    drawn += u32::from(inner && inner_share == 0.5);
+                    drawn += u32::from(inner && intra_skill_share == 0.5);
                 }
                 None => {
-                    assert!(!policy || (inner && inner_share < 1.0), "{}", says());
+                    assert!(!policy || (inner && intra_skill_share < 1.0), "{}", says());
                     refused += u32::from(!policy);
-                    skipped += u32::from(inner && inner_share == 0.5);
+                    skipped += u32::from(inner && intra_skill_share == 0.5);
                 }
             }
         }
@@ -442,7 +446,7 @@ fn steps_between_decisions_are_drawn_anew() {
     let root = bench.skill("top");
     let mut counts = [0_u32; 7];
     let mut patterns = std::collections::BTreeSet::new();
-    bench.params[root].inner_share = 0.25;
+    bench.params[root].intra_skill_share = 0.25;
     for number in 0..1200 {
         (bench.state.trial, bench.state.replay) = (number / 40, number % 40);
         let found = replay(&mut bench, &seven(ENDED));

@@ -5,7 +5,7 @@ mod observations;
 
 pub(crate) use observations::made_up;
 
-use skilltree::config::plan::{Child, Input, Plan, Skill, Threshold};
+use skilltree::config::plan::{Child, Input, Plan, SkillPlan, Threshold};
 use skilltree::config::{Overrides, load};
 use skilltree::env::segments::SegmentGrid;
 use skilltree::env::workgroup::{CohortData, Learner, Scratch};
@@ -40,17 +40,17 @@ pub(crate) const TREE: &str = r#"
     at = []
     episodes = 1
     [teacher]
-    episodes = 1
+    eval_episodes = 1
     [learning]
-    init = 0.4
+    init_range = 0.4
     [skill.dock]
     inputs = ["sonar(60)", "light", "bumpers"]
     reward = { docked = 100, collision = -10 }
-    ends = ["docked"]
+    goal = ["docked"]
     [skill.door]
     inputs = ["sonar(60)", "sonar-far", "bumpers"]
     reward = { passed-door = 100, collision = -10 }
-    ends = ["passed-door"]
+    goal = ["passed-door"]
     [skill.right]
     inputs = ["sonar(30)", "bumpers"]
     reward = { beside-right = 8, collision = -10 }
@@ -61,7 +61,7 @@ pub(crate) const TREE: &str = r#"
     inputs = ["sonar-far", "bumpers", "running"]
     applicable = { dock = 0.25, door = 0.5 }
     reward = { docked = 100 }
-    ends = ["docked"]
+    goal = ["docked"]
     max_steps = 200
 "#;
 
@@ -164,7 +164,7 @@ pub(crate) fn most(values: impl IntoIterator<Item = f64>) -> f64 {
 }
 
 /// What a skill's nets are given for a record, from what the config's documentation says of its inputs.
-pub(crate) fn inputs64(skill: &Skill, rooms: usize, record: &[u32]) -> Vec<f64> {
+pub(crate) fn inputs64(skill: &SkillPlan, rooms: usize, record: &[u32]) -> Vec<f64> {
     let sonar = readings(record);
     let float = |word: usize| f64::from(f32::from_bits(record[word]));
     let bit = |word: u32, at: usize| f64::from(word >> at & 1);
@@ -225,13 +225,13 @@ pub(crate) fn reflected(record: &[u32]) -> [u32; BASE_WORDS] {
 
 /// The skills of one learner, in f64.
 pub(crate) struct Tree64<'a> {
-    skills: &'a [Skill],
+    skills: &'a [SkillPlan],
     nets: Vec<Nets64>,
     rooms: usize,
 }
 
 impl<'a> Tree64<'a> {
-    pub(crate) fn new(skills: &'a [Skill], rooms: usize, plans: &[SkillShape], nets: &[f32]) -> Self {
+    pub(crate) fn new(skills: &'a [SkillPlan], rooms: usize, plans: &[SkillShape], nets: &[f32]) -> Self {
         Self { skills, nets: plans.iter().map(|plan| Nets64::of(nets, plan)).collect(), rooms }
     }
 

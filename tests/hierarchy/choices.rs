@@ -151,7 +151,7 @@ const DEEP: &str = r#"
     children = ["leave", "left"]
     inputs = ["bumpers"]
     reward = { docked = 100 }
-    ends = ["docked"]
+    goal = ["docked"]
 "#;
 
 #[test]
@@ -163,9 +163,9 @@ fn every_level_draws_for_itself() {
             SILENT.to_owned(),
             "root=home".to_owned(),
             format!("skill.home.learning.child_inverse_temperature={heat}"),
-            format!("skill.leave.choice={choice}"),
+            format!("skill.leave.policy={choice}"),
             // The root's own order decides: it always takes `leave`.
-            "skill.home.choice=ordered".to_owned(),
+            "skill.home.policy=fixed-priority".to_owned(),
         ];
         let bench = Bench::new(&text, &set.each_ref().map(String::as_str));
         let (tree, home, leave) = (bench.tree(), bench.skill("home"), bench.skill("leave"));
@@ -212,7 +212,7 @@ fn baselines_choose_among_what_is_applicable() {
     let mut next = stream(53);
     let mut sizes = Set::new();
     for choice in ["random", "ordered"] {
-        let set = format!("skill.top.choice={choice}");
+        let set = format!("skill.top.policy={choice}");
         let bench = Bench::new(TREE, &[SILENT, &set]);
         let (tree, root) = (bench.tree(), bench.skill("top"));
         for _ in 0..25 {
@@ -244,9 +244,9 @@ fn tests_follow_the_rules_step_by_step() {
     let mut next = stream(54);
     let ways = [
         &["skill.top.persistence=true", "skill.top.interrupt=true"][..],
-        &["skill.top.persistence=true", "skill.top.interrupt=false", "skill.top.decision_steps=7"],
+        &["skill.top.persistence=true", "skill.top.interrupt=false", "skill.top.child_timeout=7"],
         &["skill.top.persistence=training"],
-        &["skill.top.persistence=true", "skill.top.applicability=false", "skill.top.decision_steps=0"],
+        &["skill.top.persistence=true", "skill.top.applicability=false", "skill.top.child_timeout=0"],
     ];
     for way in ways {
         // The children see enough to wander, and the root changes its mind.
@@ -255,14 +255,14 @@ fn tests_follow_the_rules_step_by_step() {
         let (tree, root) = (bench.tree(), bench.skill("top"));
         let own = &bench.plan.arms[0].skills[root];
         let goal = |child: &Child| match child {
-            Child::Skill(below) => Choice::Skill(super::persistence::members(bench.plan.arms[0].skills[*below].ends)),
+            Child::Skill(below) => Choice::Skill(super::persistence::members(bench.plan.arms[0].skills[*below].goal)),
             Child::Action(action) => Choice::Action(*action as u32),
         };
         let rules = Rules {
-            persist: own.persistence.tests,
-            applicability: own.persistence.applicability,
-            interrupt: own.persistence.interrupt,
-            patience: (own.persistence.decision_steps > 0).then_some(own.persistence.decision_steps),
+            persist: own.params.persist_tests == 1,
+            applicability: own.params.applicability == 1,
+            interrupt: own.params.interrupt == 1,
+            patience: (own.params.child_timeout > 0).then_some(own.params.child_timeout),
         };
         let (mut held, mut free, mut changes) = (0, 0, 0);
         for number in 0..60 {

@@ -76,7 +76,7 @@ fn values_of_shared_nets_match_f64() {
 fn one_step_descends_the_gradient_of_one_output() {
     let mut next = random(5);
     for (child, goal) in [(0, 0.9), (1, -0.7), (2, 0.2), (3, -0.95)] {
-        let (mut bench, root) = shared_net(&["learning.optimiser=sgd", "learning.rate=0.5"]);
+        let (mut bench, root) = shared_net(&["learning.optimiser=sgd", "learning.learning_rate=0.5"]);
         bench.params[root].beta1 = 0.0;
         let skill = bench.shared.skills[root];
         let (mut scratch, x) = look(&bench, root, &mut next);
@@ -113,7 +113,7 @@ fn one_step_descends_the_gradient_of_one_output() {
 /// Adam with one clock for the whole net: outputs that a step does not teach have a gradient of 0 in it.
 #[test]
 fn adam_of_a_shared_net_follows_the_papers_formula() {
-    let (mut bench, root) = shared_net(&["learning.rate=0.01", "learning.epsilon=1e-3"]);
+    let (mut bench, root) = shared_net(&["learning.learning_rate=0.01", "learning.epsilon=1e-3"]);
     let (beta1, beta2, epsilon, rate) = (0.9_f64, 0.999_f64, 1.0e-3_f64, 0.01_f64);
     let skill = bench.shared.skills[root];
     let mut next = random(6);

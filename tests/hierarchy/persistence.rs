@@ -141,7 +141,7 @@ fn made_up(next: &mut impl FnMut() -> f64) -> (Chooser, Vec<SkillShape>, HyperPa
     // Another skill may have been blocked, which does not bind one that masks nothing.
     params.mask_blocked = u32::from(next() < 0.8);
     params.interrupt = u32::from(rules.interrupt);
-    params.decision_steps = rules.patience.unwrap_or(0);
+    params.child_timeout = rules.patience.unwrap_or(0);
     (Chooser { choices, rules, running: None, before: Set::new() }, skills, params)
 }
 

@@ -11,11 +11,11 @@ use skilltree::layout::{Agent, Episode};
 use skilltree::policy::hierarchy::place;
 use skilltree::policy::planner_table::consult;
 use skilltree::teacher::value_iteration::Planner;
-use skilltree::train::batch_group::{Group, groups, terms_of};
+use skilltree::train::batch_group::{BatchGroup, groups, terms_of};
 use skilltree::world::Pose;
 
 /// The tree with all four skills planned; children in no tidy order.
-fn planned() -> (Plan, Group) {
+fn planned() -> (Plan, BatchGroup) {
     let set = [
         "skill.dock.planned=true",
         "skill.door.planned=true",
@@ -30,12 +30,12 @@ fn planned() -> (Plan, Group) {
     (plan, group)
 }
 
-fn planner(plan: &Plan, group: &Group, skill: &Skill) -> Planner {
+fn planner(plan: &Plan, group: &BatchGroup, skill: &Skill) -> Planner {
     Planner::new(plan.world(), &group.shared, skill, &terms_of(&plan.arms[0]))
 }
 
 /// Values of all children at a pose of a trial that began in room `origin`.
-fn consulted(group: &Group, skill: usize, origin: u32, pose: Pose) -> Vec<f32> {
+fn consulted(group: &BatchGroup, skill: usize, origin: u32, pose: Pose) -> Vec<f32> {
     let (mut agent, mut scratch) = (Agent::zeroed(), Scratch::default());
     place(&mut agent, &group.shared, pose);
     agent.origin = origin;

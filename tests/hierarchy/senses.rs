@@ -159,13 +159,13 @@ impl Memory {
         };
         // 254 inches of free way in both directions count 1, none -1.
         let now = [looking(0.0) + looking(180.0), looking(90.0) + looking(270.0)].map(|sum| sum / 127.0 - 1.0);
-        let past = if step == 0 { 0.0 } else { f64::from(params.range_mean) };
+        let past = if step == 0 { 0.0 } else { f64::from(params.range_decay) };
         for (mean, now) in self.means.iter_mut().zip(now) {
             *mean = past * *mean + (1.0 - past) * now;
         }
-        self.light = if record[6] & 0xff_ffff != 0 { 1.0 } else { self.light * f64::from(params.light_trace) };
+        self.light = if record[6] & 0xff_ffff != 0 { 1.0 } else { self.light * f64::from(params.light_decay) };
         let (sine, cosine) = compass.to_radians().sin_cos();
-        self.door = if passed { [1.0, cosine, sine] } else { self.door.map(|d| d * f64::from(params.door_trace)) };
+        self.door = if passed { [1.0, cosine, sine] } else { self.door.map(|d| d * f64::from(params.door_decay)) };
     }
 }
 
@@ -175,11 +175,12 @@ fn memories_and_doors_along_a_walk() {
     // The last walk is noisy, so that the compass is off and readings differ.
     let noisy = "robot.noise={ actuator = 0.02, sonar = 0.1, light = 0.1, compass = 3.0 }";
     for noise in [SILENT, noisy] {
-        let traces = ["robot.memory={ light = 0.75, doors = 0.875, ranges = 0.6 }", "skill.top.applicable={}"];
+        let traces =
+            ["robot.memory={ light_decay = 0.75, door_decay = 0.875, range_decay = 0.6 }", "skill.top.applicable={}"];
         let bench = Bench::new(TREE, &[&[noise, inputs], traces.as_slice()].concat());
         let root = bench.skill("top");
         let (skill, params) = (&bench.shared.skills[root], &bench.params[root]);
-        assert_eq!((params.light_trace, params.door_trace, params.range_mean), (0.75, 0.875, 0.6));
+        assert_eq!((params.light_decay, params.door_decay, params.range_decay), (0.75, 0.875, 0.6));
         let (mut agent, mut scratch) = (Agent::zeroed(), Scratch::default());
         // Heading a little off, so that no reading is equally near to two directions.
         place(&mut agent, &bench.shared, Pose { x: 60.0, y: 62.0, heading: 0.25 });
@@ -349,14 +350,14 @@ fn lessons_of_skills_that_remember_hold_what_they_do() {
         "root=door",
         "skill.door.inputs=['sonar(60)', 'door-trace', 'range-means', 'light-trace', 'room']",
         // It goes on after each door.
-        "skill.door.ends=[]",
+        "skill.door.goal=[]",
         "skill.door.lessons=4",
         "skill.door.trials=30",
         "skill.door.max_steps=40",
-        "teacher.bank=8",
-        "learning.taught_passes=1",
+        "teacher.lessons=8",
+        "learning.pretrain_epochs=1",
         "learning.replays=1",
-        "robot.memory={ light = 0.75, doors = 0.875, ranges = 0.6 }",
+        "robot.memory={ light_decay = 0.75, door_decay = 0.875, range_decay = 0.6 }",
     ];
     let plan = plan_with(TREE, &set);
     let group = only_group(&plan);

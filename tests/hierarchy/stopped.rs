@@ -4,8 +4,9 @@ use super::stems::{ARMS, NAMES, left, short};
 use skilltree::backend::cpu::CpuBackend;
 use skilltree::config::plan::Plan;
 use skilltree::run_folder::{Provenance, RecordError, RunFolder};
-use skilltree::train::batch_group::{Group, groups};
-use skilltree::train::run::{Observer, Options, RunError, run};
+use skilltree::train::batch_group::{BatchGroup, groups};
+use skilltree::train::callbacks::{Callbacks, Signal};
+use skilltree::train::run::{Options, RunError, run};
 use std::path::Path;
 use std::time::Duration;
 use tempfile::TempDir;
@@ -16,29 +17,30 @@ struct Looker {
     trials: Vec<u64>,
 }
 
-impl Observer for Looker {
-    fn trials(&mut self, finished: u64) {
-        self.trials.push(finished);
+impl Callbacks for Looker {
+    fn progress(&mut self, trials: u64) -> Signal {
+        self.trials.push(trials);
+        match self.looks.checked_sub(1) {
+            Some(left) => {
+                self.looks = left;
+                Signal::Continue
+            }
+            None => Signal::Stop,
+        }
     }
-
-    fn committed(&mut self, _finished: usize) {}
 
     fn set_aside(&mut self, why: &RecordError, _now: &Path) {
         panic!("{why}");
     }
-
-    fn stop(&mut self) -> bool {
-        match self.looks.checked_sub(1) {
-            Some(left) => {
-                self.looks = left;
-                false
-            }
-            None => true,
-        }
-    }
 }
 
-fn attempt(plan: &Plan, groups: &[Group], dir: &Path, round: usize, looks: usize) -> (Result<(), RunError>, Vec<u64>) {
+fn attempt(
+    plan: &Plan,
+    groups: &[BatchGroup],
+    dir: &Path,
+    round: usize,
+    looks: usize,
+) -> (Result<(), RunError>, Vec<u64>) {
     let worlds: Vec<(&str, &str)> = plan.worlds.iter().map(|w| (w.file.as_str(), w.text.as_str())).collect();
     let folder = RunFolder::open(dir, &plan.resolved, &worlds).expect("a run folder");
     let mut backend = CpuBackend::new(1 + round % 3, Some([700, 90, 16_384][round % 3])).expect("threads");
@@ -51,7 +53,7 @@ fn attempt(plan: &Plan, groups: &[Group], dir: &Path, round: usize, looks: usize
 #[test]
 fn a_tree_that_is_stopped_at_every_turn_leaves_the_same() {
     let altered =
-        format!("{ARMS}\n[alter.loud]\nnoise = {{ sonar = 0.5 }}\n[alter.still]\nnoise = {{ sonar = 0.0 }}\n");
+        format!("{ARMS}\n[transfer.loud]\nnoise = {{ sonar = 0.5 }}\n[transfer.still]\nnoise = {{ sonar = 0.0 }}\n");
     let plan = short(&altered, &["seeds='0..2'"]);
     let all = groups(&plan).unwrap_or_else(|error| panic!("{error}"));
     let parent = TempDir::new().expect("a folder");

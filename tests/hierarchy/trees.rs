@@ -5,13 +5,13 @@ use super::persistence::{Choice, Chooser, Reason, Rules, Set, members};
 use bytemuck::Zeroable;
 use skilltree::backend::cpu::CpuBackend;
 use skilltree::backend::{Backend, Cohort, Stop, Test};
-use skilltree::config::plan::{Child, Plan, Skill, Threshold};
+use skilltree::config::plan::{Child, Plan, SkillPlan, Threshold};
 use skilltree::kernels::evaluate::{STATE_ACHIEVED, evaluate};
 use skilltree::layout::phase::{PHASE_DONE, PHASE_REPLAY, PHASE_TEACH};
 use skilltree::layout::{Dispatch, Episode, LANES, LESSON_HEADER, RECORD_WORDS, ROW_WORDS, VALUE_WORD};
 use skilltree::learn::lesson::ENDED;
 use skilltree::policy::persistence::IDLE;
-use skilltree::train::batch_group::{Group, groups};
+use skilltree::train::batch_group::{BatchGroup, groups};
 use std::collections::BTreeMap;
 
 /// Home is docked to the charger; from the other room the way there leads through the door.
@@ -23,31 +23,31 @@ const HOME: &str = r#"
     at = [0]
     episodes = 40
     [teacher]
-    bank = 32
+    lessons = 32
     discount = 0.85
-    episodes = 20
+    eval_episodes = 20
     [learning]
     replays = 20
-    taught_passes = 20
+    pretrain_epochs = 20
     taught_replays = 2
     inverse_temperature_trials = 30
-    rate_trials = 60
-    rate_end_share = 0.3
+    learning_rate_trials = 60
+    learning_rate_end_share = 0.3
     child_inverse_temperature = 40.0
     [skill.dock]
     inputs = ["sonar(60)", "light", "bumpers"]
     reward = { docked = 100, collision = -10 }
     starts = { light-area = 0.8, anywhere = 0.2 }
-    tests = "light-area"
-    ends = ["docked"]
+    eval_starts = "light-area"
+    goal = ["docked"]
     lessons = 10
     trials = 60
     [skill.pass-door]
     inputs = ["sonar(60)", "sonar-far", "bumpers"]
     reward = { passed-door = 100, collision = -10 }
     starts = "near-doors"
-    tests = "near-doors"
-    ends = ["passed-door"]
+    eval_starts = "near-doors"
+    goal = ["passed-door"]
     lessons = 10
     trials = 60
     [skill.follow-right]
@@ -64,8 +64,8 @@ const HOME: &str = r#"
     applicable = { pass-door = 0.3 }
     reward = { passed-door = 100 }
     starts = "room:B"
-    tests = "room:B"
-    ends = ["passed-door"]
+    eval_starts = "room:B"
+    goal = ["passed-door"]
     max_steps = 60
     trials = 20
     [skill.go-home]
@@ -73,11 +73,11 @@ const HOME: &str = r#"
     inputs = ["values", "applicable", "lit", "running", "light-trace", "door-trace", "range-means", "room"]
     applicable = { dock = 0.25 }
     applicability = false
-    decision_steps = 10
+    child_timeout = 10
     reward = { docked = 100 }
     starts = { "room:B" = 0.7, anywhere = 0.3 }
-    tests = "room:B"
-    ends = ["docked"]
+    eval_starts = "room:B"
+    goal = ["docked"]
     max_steps = 80
     trials = 40
     [skill.leave.learning]
@@ -86,8 +86,8 @@ const HOME: &str = r#"
     [skill.go-home.learning]
     gamma = 0.98
     lambda = 0.6
-    rate = 0.005
-    rate_end_share = 1.0
+    learning_rate = 0.005
+    learning_rate_end_share = 1.0
     replays = 60
     inverse_temperature_start = 8.0
     inverse_temperature_end = 40.0
@@ -102,7 +102,7 @@ pub(crate) fn home(arms: &str, set: &[&str]) -> Plan {
 /// The point beyond every skill.
 pub(crate) const DONE: Stop = Stop { skill: u32::MAX, trial: u32::MAX };
 
-pub(crate) fn only_group(plan: &Plan) -> Group {
+pub(crate) fn only_group(plan: &Plan) -> BatchGroup {
     let mut groups = groups(plan).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(groups.len(), 1);
     groups.remove(0)
@@ -113,12 +113,12 @@ pub(crate) fn reach(backend: &mut CpuBackend, stop: Stop) {
 }
 
 /// A cohort that has learned everything, and its tests of each skill before the first trial and after the last.
-fn learned(plan: &Plan, group: &Group) -> (Cohort, Vec<[Vec<Episode>; 2]>) {
+fn learned(plan: &Plan, group: &BatchGroup) -> (Cohort, Vec<[Vec<Episode>; 2]>) {
     let mut backend = CpuBackend::new(2, None).expect("threads");
     backend.load(group.cohort(plan, &group.learners(plan))).expect("memory");
     let mut tests = Vec::new();
     for (number, skill) in (0..).zip(&plan.arms[0].skills) {
-        tests.push([0, skill.trials].map(|trial| {
+        tests.push([0, skill.params.trials].map(|trial| {
             reach(&mut backend, Stop { skill: number, trial });
             backend.evaluate(Test { skill: number, number: trial, episodes: 40 }).expect("tests")
         }));
@@ -145,8 +145,8 @@ fn three_levels_learn_to_go_home() {
         let rows = &cohort.rows[learner * cohort.rows_stride..][..state.rows as usize * ROW_WORDS];
         let mut expected = Vec::new();
         for (number, skill) in (0..).zip(&plan.arms[0].skills) {
-            expected.extend((0..skill.lessons).map(|trial| (number, trial, 1)));
-            expected.extend((0..skill.trials).map(|trial| (number, trial, 0)));
+            expected.extend((0..skill.params.lessons).map(|trial| (number, trial, 1)));
+            expected.extend((0..skill.params.trials).map(|trial| (number, trial, 0)));
         }
         let found: Vec<(u32, u32, u32)> = rows.chunks(ROW_WORDS).map(|row| (row[0], row[1], row[7])).collect();
         assert_eq!(found, expected, "learner {learner}");
@@ -234,7 +234,7 @@ fn trials(cohort: &Cohort, learner: usize, skill: usize) -> Vec<&[u32]> {
     let params = &cohort.params[learner * cohort.skills + skill];
     let lessons = &cohort.lessons[learner * cohort.lessons_stride..][..cohort.lessons_stride];
     let slots = lessons[plan.memory_offset as usize..].chunks(plan.lesson_stride as usize);
-    slots.take(params.trials.min(params.memory) as usize).collect()
+    slots.take(params.trials.min(params.replay_capacity) as usize).collect()
 }
 
 /// Every remembered trial of both skills over skills, word by word: what the rules allow, what was applicable, what the
@@ -243,8 +243,8 @@ fn trials(cohort: &Cohort, learner: usize, skill: usize) -> Vec<&[u32]> {
 fn remembered_trials_follow_the_rules() {
     let rules = [
         &["skill.leave.interrupt=false", "skill.go-home.persistence=true"][..],
-        &["skill.leave.decision_steps=4", "skill.go-home.applicability=true", "skill.leave.persistence='training'"],
-        &["skill.leave.persistence=false", "skill.go-home.decision_steps=0"],
+        &["skill.leave.child_timeout=4", "skill.go-home.applicability=true", "skill.leave.persistence='training'"],
+        &["skill.leave.persistence=false", "skill.go-home.child_timeout=0"],
     ];
     let mut reasons_seen = BTreeMap::<Reason, u32>::new();
     let (mut steps, mut held, mut applied, mut idle_worths) = (0, 0, 0, 0);
@@ -264,15 +264,15 @@ fn remembered_trials_follow_the_rules() {
                     let records: Vec<&[u32]> =
                         trial[LESSON_HEADER..].chunks(RECORD_WORDS).take(trial[0] as usize + 1).collect();
                     let goal = |child: &Child| match child {
-                        Child::Skill(below) => Choice::Skill(members(skills[*below].ends)),
+                        Child::Skill(below) => Choice::Skill(members(skills[*below].goal)),
                         Child::Action(action) => Choice::Action(*action as u32),
                     };
-                    let persistence = params.persistence;
+                    let own = &params.params;
                     let rules = Rules {
-                        persist: persistence.training,
-                        applicability: persistence.applicability,
-                        interrupt: persistence.interrupt,
-                        patience: (persistence.decision_steps > 0).then_some(persistence.decision_steps),
+                        persist: own.persist_training == 1,
+                        applicability: own.applicability == 1,
+                        interrupt: own.interrupt == 1,
+                        patience: (own.child_timeout > 0).then_some(own.child_timeout),
                     };
                     let choices = params.children.iter().map(goal).collect();
                     let mut chooser = Chooser { choices, rules, running: None, before: Set::new() };
@@ -317,10 +317,10 @@ fn remembered_trials_follow_the_rules() {
                             break;
                         }
                         happened = members(word >> 24 & 0x7f);
-                        let pay: f32 = happened.iter().map(|event| params.reward[*event]).sum();
+                        let pay: f32 = happened.iter().map(|event| params.params.reward[*event]).sum();
                         assert_eq!(f32::from_bits(record[9]), pay, "{}", says());
                         earned += pay;
-                        let ended = happened.iter().any(|event| params.ends >> event & 1 == 1);
+                        let ended = happened.iter().any(|event| params.goal >> event & 1 == 1);
                         assert_eq!(ended, step + 1 == trial[0] as usize && trial[1] == ENDED, "{}", says());
                         let child = (word & 0xff) as usize;
                         assert!(allowed.contains(&child), "{}", says());
@@ -333,7 +333,7 @@ fn remembered_trials_follow_the_rules() {
                         chooser.take(child, !reasons.is_empty(), applicable);
                     }
                     assert_eq!(f32::from_bits(trial[2]), earned);
-                    assert!(trial[1] == ENDED || trial[0] == params.max_steps);
+                    assert!(trial[1] == ENDED || trial[0] == params.params.max_steps);
                 }
             }
         }
@@ -346,7 +346,7 @@ fn remembered_trials_follow_the_rules() {
 }
 
 /// What `leave` is worth while nobody has asked it for a step: the best of its values, given the worth of `pass-door`.
-fn idle_worth(tree: &Tree64<'_>, skills: &[Skill], record: &[u32]) -> f64 {
+fn idle_worth(tree: &Tree64<'_>, skills: &[SkillPlan], record: &[u32]) -> f64 {
     let leave = skills.iter().position(|skill| skill.name == "leave").expect("the skill");
     let worths = tree.worths(leave, record);
     let mut own = record.to_vec();
@@ -363,7 +363,7 @@ fn idle_worth(tree: &Tree64<'_>, skills: &[Skill], record: &[u32]) -> f64 {
 fn baselines_choose_in_training_too() {
     for choice in ["random", "ordered"] {
         let short = ["skill.dock.trials=4", "skill.pass-door.trials=4", "skill.follow-right.trials=2", "seeds='0..2'"];
-        let root = format!("skill.go-home.choice={choice}");
+        let root = format!("skill.go-home.policy={choice}");
         let plan = home("", &[short.as_slice(), &[&root, "skill.go-home.applicability=true"]].concat());
         let (cohort, _) = learned(&plan, &only_group(&plan));
         let mut counts = BTreeMap::<Vec<usize>, [u32; 2]>::new();
@@ -392,7 +392,7 @@ fn half_of_the_replays_are_seen_in_a_mirror() {
     let short = ["seeds='0..2'", "root=pass-door", "skill.pass-door.trials=6", "skill.pass-door.lessons=3"];
     for mirror in [true, false] {
         let set = format!("skill.pass-door.learning.mirror_replays={mirror}");
-        let plan = home("", &[short.as_slice(), &["learning.taught_passes=5", &set]].concat());
+        let plan = home("", &[short.as_slice(), &["learning.pretrain_epochs=5", &set]].concat());
         let group = only_group(&plan);
         let mut backend = CpuBackend::new(1, Some(1)).expect("threads");
         backend.load(group.cohort(&plan, &group.learners(&plan))).expect("memory");

@@ -1,7 +1,7 @@
 //! Claims: each verdict flips where its rule says.
 
-use crate::made::{Made, Test};
-use skilltree::report::claims::Verdict::{self, DoesNotHold, Holds, NotTested, Partly};
+use crate::hand_made_tables::{HandMadeTables, Test};
+use skilltree::report::claims::ClaimVerdict::{self, DoesNotHold, Holds, NotTested, Partly};
 use skilltree::report::claims::judge;
 
 /// Test trials from one room.
@@ -13,14 +13,14 @@ fn tested(trials: u32, successes: u32) -> (u32, u32, [(&'static str, u32, u32); 
 }
 
 /// An arm of two seeds with one test of the root.
-fn with_arm(made: &mut Made, arm: &str, tree: bool, successes: u32) {
+fn with_arm(made: &mut HandMadeTables, arm: &str, tree: bool, successes: u32) {
     let (trials, actions, rooms) = tested(100, successes);
     made.arm(arm, tree, 2, &[(trials, actions, &rooms)]);
 }
 
 /// Arms with one test of the root each, the tree among them.
-fn arms(main: u32, others: &[(&str, u32)]) -> Made {
-    let mut made = Made::default();
+fn arms(main: u32, others: &[(&str, u32)]) -> HandMadeTables {
+    let mut made = HandMadeTables::default();
     with_arm(&mut made, "hierarchical", true, main);
     for &(arm, successes) in others {
         with_arm(&mut made, arm, !arm.starts_with("monolithic"), successes);
@@ -29,8 +29,8 @@ fn arms(main: u32, others: &[(&str, u32)]) -> Made {
 }
 
 /// Untaught robots, of which `failing` fail of ten and the others get there at a test after `needed` trials.
-fn untaught(failing: u32, needed: u32) -> Verdict {
-    let mut made = Made::default();
+fn untaught(failing: u32, needed: u32) -> ClaimVerdict {
+    let mut made = HandMadeTables::default();
     for (seed, trials) in (0..10).flat_map(|seed| [100, 150, 200, 300].map(|trials| (seed, trials))) {
         let learned = if trials >= needed { 80 } else { 60 };
         let (trials, actions, rooms) = tested(trials, if seed < failing { 49 } else { learned });
@@ -49,7 +49,7 @@ fn untaught_docking_fails_for_some_and_is_slow_for_the_others() {
 #[test]
 fn taught_docking_is_very_good() {
     let verdict = |trials: u32, successes: u32| {
-        let mut made = Made::default();
+        let mut made = HandMadeTables::default();
         let (trials, actions, rooms) = tested(trials, successes);
         made.test("docking-taught", "dock", 0, (trials, actions, &rooms));
         made.verdict(2)
@@ -62,7 +62,7 @@ fn taught_docking_is_very_good() {
 #[test]
 fn the_other_skills_are_judged_by_success_and_by_return() {
     let verdict = |doors: u32, walls: u32| {
-        let mut made = Made::default();
+        let mut made = HandMadeTables::default();
         made.test("hierarchical", "pass-door", 0, (9, 9, &[("A", ALL, doors)]));
         made.test("hierarchical", "follow-right", 0, (9, 19, &[("A", ALL, walls)]));
         made.test("hierarchical", "recharge", 0, (9, 29, &[("A", ALL, 9)]));
@@ -110,8 +110,8 @@ fn punishment_helps_little() {
 }
 
 /// The main arm with one test from three rooms, where the planner always succeeds.
-fn rooms(trials: u32, [a, b, c]: [u32; 3]) -> Made {
-    let mut made = Made::default();
+fn rooms(trials: u32, [a, b, c]: [u32; 3]) -> HandMadeTables {
+    let mut made = HandMadeTables::default();
     made.arm("hierarchical", true, 2, &[(trials, 9, &[("A", ALL, a), ("B", ALL, b), ("C", ALL, c)])]);
     made.test("planner", "recharge", 0, (0, 0, &[("A", ALL, 100), ("B", ALL, 100), ("C", ALL, 100)]));
     made
@@ -155,7 +155,7 @@ fn td_lambda_must_lead_on_the_same_seeds() {
 #[test]
 fn equal_cost_is_judged_against_the_best_single_function() {
     let verdict = |tests: &[(&str, [u32; 2])]| {
-        let mut made = Made::default();
+        let mut made = HandMadeTables::default();
         // After 2,000 actions 80 of 100; what came later is beyond the others' budget of 2,500.
         let own: [Test<'_>; 2] = [(10, 2_000, &[("A", ALL, 80)]), (20, 3_000, &[("A", ALL, 100)])];
         made.arm("hierarchical", true, 2, &own);
@@ -189,7 +189,7 @@ fn small_alterations_may_cost_little() {
 
 #[test]
 fn a_run_without_the_main_arm_shows_only_what_it_tests() {
-    let mut made = Made::default();
+    let mut made = HandMadeTables::default();
     let (trials, actions, rooms) = tested(150, 95);
     made.test("docking-taught", "dock", 0, (trials, actions, &rooms));
     let claims = judge(&made.summary(), &[]);

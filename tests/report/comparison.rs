@@ -1,23 +1,23 @@
 //! Figure 2, equal cost, rooms, alterations and example trials, against numbers computed by hand.
 
 use crate::close;
-use crate::made::Made;
-use skilltree::report::alterations::differences;
+use crate::hand_made_tables::HandMadeTables;
 use skilltree::report::comparison::{Comparison, median_actions, within};
+use skilltree::report::figure::{PageSection, svg};
 use skilltree::report::figure2;
-use skilltree::report::figures::Section;
 use skilltree::report::rooms::{self, low_quantile};
-use skilltree::report::statistics::{bootstrap_ratio, ratio, sorted};
+use skilltree::report::statistics::{ratio, ratio_of, sorted};
 use skilltree::report::summary::{Score, Series};
-use skilltree::report::trace::{draw, pieces};
-use skilltree::report::training::{Tally, pooled};
+use skilltree::report::training::{TrialSums, pooled};
+use skilltree::report::trajectory_plot::{draw, stretches};
+use skilltree::report::transfer::differences;
 use skilltree::run_folder::{Trajectory, TrajectoryPoint};
 use skilltree::world::load;
 use std::path::Path;
 
 /// Of two seeds of a tree, one achieves 1 of its first 10 trials, the other all; 25 trials in all.
-fn trained() -> Made {
-    let mut made = Made::default();
+fn trained() -> HandMadeTables {
+    let mut made = HandMadeTables::default();
     made.arm("hierarchical", true, 2, &[(0, 100, &[("A", 10, 0)]), (25, 9_000, &[("A", 10, 5)])]);
     for trial in 0..25 {
         let lucky = trial == 3;
@@ -36,24 +36,24 @@ fn windows_sum_the_roots_training_trials() {
     let trainings = trained().trainings();
     let windows = &trainings[0].windows;
     assert_eq!((trainings.len(), windows.iter().map(|window| window.end).collect::<Vec<_>>()), (1, vec![10, 20, 25]));
-    let first = &windows[0].tallies;
+    let first = &windows[0].sums;
     assert_eq!((first[0].steps, first[0].reward, first[0].collisions, first[0].trials), (1850, 100.0, 72, 10));
     assert_eq!((first[1].steps, first[1].reward), (1000, 1000.0));
-    let (together, interval) = pooled(first, Tally::reward_and_steps, 2000);
-    close(together, 1100.0 / 2850.0, 1e-12);
+    let together = pooled(first, TrialSums::reward_and_steps, 2000);
+    close(together.value, 1100.0 / 2850.0, 1e-12);
     // A resample of two seeds is one of them twice with probability 1/2.
-    close(interval.low, 100.0 / 1850.0, 1e-12);
-    close(interval.high, 1.0, 1e-12);
+    close(together.low, 100.0 / 1850.0, 1e-12);
+    close(together.high, 1.0, 1e-12);
     // One trial of 2 per step, ten of 1.
-    close(pooled(first, Tally::ratios_and_trials, 0).0, 12.0 / 20.0, 1e-12);
-    let all = trainings[0].tallies(0);
+    close(pooled(first, TrialSums::ratios_and_trials, 0).value, 12.0 / 20.0, 1e-12);
+    let all = trainings[0].sums_by_seed(0);
     assert_eq!((all[0].trials, all[0].steps, all[1].reward), (25, 24 * 200 + 50, 2500.0));
     close(
-        ratio(&trainings[0].tallies(20).iter().map(Tally::reward_and_steps).collect::<Vec<_>>()),
+        ratio(&trainings[0].sums_by_seed(20).iter().map(TrialSums::reward_and_steps).collect::<Vec<_>>()),
         500.0 / 1500.0,
         1e-12,
     );
-    assert!(bootstrap_ratio(&[], 100).low.is_nan());
+    assert!(ratio_of(&[], 100).low.is_nan());
 }
 
 #[test]
@@ -66,20 +66,21 @@ fn figure_2_has_a_panel_per_kind_of_arm() {
     let names: Vec<_> = drawings.iter().map(|drawing| drawing.name.as_str()).collect();
     // The monolithic arm has tests, which only the paper's version shows, and no training trials.
     assert_eq!(names, ["figure-2a-paper", "figure-2b-paper", "figure-2b"]);
-    assert!(
-        drawings[1].svg.contains("greedy tests")
-            && drawings[1].svg.contains("Mean over the first n = 2 seeds; no interval.")
-    );
-    assert!(drawings[2].svg.contains("Sums over n = 2 seeds"));
-    assert_eq!(drawings.iter().filter(|drawing| drawing.section == Section::Paper).count(), 2);
-    let budget = figure2::budget(&comparison);
-    assert!(budget.iter().all(|drawing| drawing.svg.contains(">\nmonolithic\n<")), "{}", budget[0].svg);
-    assert!(Comparison::new(&Made::default().summary()).is_none());
+    let paper = svg(&drawings[1]);
+    assert!(paper.contains(">greedy tests<") && paper.contains(">Mean over the first n = 2 seeds; no interval.<"));
+    assert!(svg(&drawings[2]).contains(">Sums over n = 2 seeds"));
+    // Both panels can be compared.
+    assert_eq!((&drawings[0].x, &drawings[0].y), (&drawings[1].x, &drawings[1].y));
+    assert_eq!(drawings.iter().filter(|drawing| drawing.section == PageSection::Paper).count(), 2);
+    let costs = figure2::equal_cost(&comparison);
+    assert_eq!(costs.len(), 4);
+    assert!(costs.iter().all(|figure| svg(figure).contains(">monolithic<")), "{:?}", costs[0]);
+    assert!(Comparison::new(&HandMadeTables::default().summary()).is_none());
 }
 
 /// Four seeds; the tree is tested after 1,000, 2,000 and 3,000 actions.
-fn budgets() -> Made {
-    let mut made = Made::default();
+fn budgets() -> HandMadeTables {
+    let mut made = HandMadeTables::default();
     made.arm(
         "hierarchical",
         true,
@@ -113,13 +114,13 @@ fn equal_cost_takes_the_last_test_within_the_budget() {
 
 #[test]
 fn rooms_are_kept_apart_and_the_worst_seeds_are_seen() {
-    let mut made = Made::default();
+    let mut made = HandMadeTables::default();
     for seed in 0..21 {
         made.test("hierarchical", "dock", seed, (0, 10, &[("A", 10, 9)]));
         made.test("hierarchical", "recharge", seed, (60, 100, &[("C", 20, seed), ("none", 1, 0), ("A", 20, 20)]));
     }
     // A seed whose tests by chance never began in C.
-    made.tests.retain(|row| !(row.seed == 7 && row.room == "B"));
+    made.tests.retain(|row| !(row.seed == 7 && row.room == "C"));
     let summary = made.summary();
     let cell = summary.series("hierarchical", "recharge").unwrap().last();
     let (a, c) = (summary.room("A").unwrap(), summary.room("C").unwrap());
@@ -137,7 +138,7 @@ fn rooms_are_kept_apart_and_the_worst_seeds_are_seen() {
 
 #[test]
 fn alterations_are_paired_by_seed_and_kept_out_of_the_curves() {
-    let mut made = Made::default();
+    let mut made = HandMadeTables::default();
     made.arm("hierarchical", true, 3, &[(60, 100, &[("A", 10, 9), ("C", 10, 8)])]);
     for (seed, successes) in [(0, 9), (2, 4)] {
         made.variant(
@@ -148,8 +149,8 @@ fn alterations_are_paired_by_seed_and_kept_out_of_the_curves() {
     }
     let summary = made.summary();
     let series: &Series = summary.series("hierarchical", "recharge").unwrap();
-    assert_eq!((series.cells.len(), series.altered.len(), series.altered[0].variant.as_str()), (1, 1, "moved"));
-    let found = differences(series, &series.altered[0]);
+    assert_eq!((series.tests.len(), series.transfer.len(), series.transfer[0].variant.as_str()), (1, 1, "moved"));
+    let found = differences(series, &series.transfer[0]);
     assert_eq!(found.len(), 2);
     close(found[0], 18.0 / 20.0 - 17.0 / 20.0, 1e-12);
     close(found[1], 8.0 / 20.0 - 17.0 / 20.0, 1e-12);
@@ -174,17 +175,16 @@ pub(crate) fn example() -> Trajectory {
 #[test]
 fn trajectories_are_drawn_in_the_colour_of_who_drives() {
     let trajectory = example();
-    let cut = pieces(&trajectory.points);
+    let cut = stretches(&trajectory.points);
     assert_eq!(cut.iter().map(|piece| (piece.child, piece.way.len())).collect::<Vec<_>>(), [(0, 3), (1, 4), (0, 2)]);
     assert_eq!(cut[1].way[0], cut[0].way[2]);
     let world = load::parse(crate::OFFICE, Path::new("world.toml")).unwrap();
-    let svg = draw(&world, &trajectory);
+    let drawn = svg(&draw(&world, &trajectory));
     // Each child's pieces and its entry in the legend; the third child never drives.
-    let lines = |color: &str| svg.matches(&format!("<polyline fill=\"none\" opacity=\"1\" stroke=\"{color}\"")).count();
-    assert_eq!((lines("#0072B2"), lines("#D55E00"), lines("#009E73")), (2 + 1, 1 + 1, 0));
-    assert!(
-        svg.contains("6 steps, goal achieved (seed 0)") && svg.contains("pass-door") && !svg.contains(">\ndock\n<")
-    );
+    let lines = |color: &str| drawn.matches(&format!("fill=\"none\" stroke=\"{color}\"")).count();
+    assert_eq!((lines("#0072b2"), lines("#d55e00"), lines("#009e73")), (2 + 1, 1 + 1, 0));
+    assert!(drawn.contains(">6 steps, goal achieved (seed 0)<"));
+    assert!(drawn.contains(">pass-door<") && !drawn.contains(">dock<"));
     let failed = Trajectory { achieved: false, points: Vec::new(), ..trajectory };
-    assert!(draw(&world, &failed).contains("0 steps, goal not achieved"));
+    assert!(draw(&world, &failed).subtitle.contains("0 steps, goal not achieved"));
 }

@@ -1,9 +1,9 @@
 //! Pages of whole runs: which parts they have, and which they leave out.
 
 use crate::comparison::example;
-use crate::made::Made;
+use crate::hand_made_tables::HandMadeTables;
 use crate::{OFFICE, scratch};
-use skilltree::report::{text, write};
+use skilltree::report::write;
 use skilltree::run_folder::tables::write_table;
 use skilltree::run_folder::trajectories::write_trajectories;
 use skilltree::run_folder::{Provenance, RunFolder, Trajectory};
@@ -20,7 +20,7 @@ const PARTS: [&str; 6] = [
     "monolithic",
 ];
 
-fn finish(dir: &Path, made: &Made, config: &str, worlds: &[(&str, &str)], trajectories: &[Trajectory]) {
+fn finish(dir: &Path, made: &HandMadeTables, config: &str, worlds: &[(&str, &str)], trajectories: &[Trajectory]) {
     let seeds = made.summary().skills[0].series[0].last().scores.iter().map(|score| score.seed).collect();
     let provenance = Provenance { version: "0.1.0".into(), backend: "cpu".into(), seeds, ..Provenance::default() };
     let files = [
@@ -33,7 +33,7 @@ fn finish(dir: &Path, made: &Made, config: &str, worlds: &[(&str, &str)], trajec
 
 /// A tree, two arms without, an arm that does not learn, two alterations in one other world, two example trials.
 fn everything(dir: &Path) {
-    let mut made = Made::default();
+    let mut made = HandMadeTables::default();
     let rooms = |successes: u32| [("A", 20, successes), ("B", 20, successes / 2), ("C", 20, successes)];
     made.arm("hierarchical", true, 8, &[(0, 500, &rooms(2)), (20, 2_500, &rooms(16)), (60, 6_000, &rooms(19))]);
     made.arm("no-persistence", true, 8, &[(0, 500, &rooms(2)), (60, 8_000, &rooms(9))]);
@@ -61,8 +61,8 @@ fn everything(dir: &Path) {
     }
     let config = concat!(
         "title = \"A <tree>\"\n",
-        "[alter.easy]\nworld = \"worlds/easy.toml\"\n",
-        "[alter.noise-double]\nnoise = { sonar = 0.2 }\n"
+        "[transfer.easy]\nworld = \"worlds/easy.toml\"\n",
+        "[transfer.noise-double]\nnoise = { sonar = 0.2 }\n"
     );
     let flat = Trajectory { arm: "monolithic".into(), achieved: false, world: "worlds/easy.toml".into(), ..example() };
     let third = Trajectory { arm: "no-persistence".into(), ..example() };
@@ -75,7 +75,7 @@ fn a_hierarchy_has_every_part() {
     let dir = scratch("report-everything");
     everything(&dir);
     let written = write(&dir).unwrap();
-    let names: Vec<_> = written.iter().map(|path| path.strip_prefix(&dir).unwrap().to_str().unwrap()).collect();
+    let names: Vec<_> = written.files.iter().map(|path| path.strip_prefix(&dir).unwrap().to_str().unwrap()).collect();
     for name in [
         "figure-2a-paper",
         "figure-2b",
@@ -107,9 +107,9 @@ fn a_hierarchy_has_every_part() {
         assert!(page.contains(said), "{said}");
     }
     assert!(!page.contains("NaN") && !page.contains('`'));
-    let said = text(&dir).unwrap();
+    let said = written.summary;
     // 16 + 8 + 16 of 60; every seed the same.
-    assert!(said.contains("A 95.0 % [95.0, 95.0]   B 45.0 % [45.0, 45.0]   C 95.0 % [95.0, 95.0]"), "{said}");
+    assert!(said.contains("A 95.0% [95.0, 95.0]   B 45.0% [45.0, 45.0]   C 95.0% [95.0, 95.0]"), "{said}");
     assert!(said.lines().any(|line| line.starts_with("   7 tree, 20 trials    partly")), "{said}");
     assert_eq!(said.lines().filter(|line| line.contains("not tested here")).count(), 5, "{said}");
 }
@@ -117,7 +117,7 @@ fn a_hierarchy_has_every_part() {
 #[test]
 fn docking_alone_has_a_short_page() {
     let dir = scratch("report-docking");
-    let mut made = Made::default();
+    let mut made = HandMadeTables::default();
     for (arm, seed) in ["taught-adam", "untaught-adam"].iter().flat_map(|arm| (0..7).map(move |seed| (arm, seed))) {
         made.test(arm, "dock", seed, (0, 100, &[("A", 20, 1)]));
         let learned = if *arm == "taught-adam" { 13 } else { 4 };
@@ -125,15 +125,15 @@ fn docking_alone_has_a_short_page() {
         made.trial(arm, "dock", seed, 0, (30, -10.0, 1));
     }
     finish(&dir, &made, "", &[("world.toml", OFFICE)], &[]);
-    write(&dir).unwrap();
+    let said = write(&dir).unwrap().summary;
     let page = fs::read_to_string(dir.join("report.html")).unwrap();
     for part in PARTS.into_iter().chain(["The paper's claims"]) {
         assert!(!page.contains(part), "{part}");
     }
     assert!(page.contains("taught-adam minus untaught-adam") && page.contains("until 80% of a seed"));
-    assert!(!text(&dir).unwrap().contains("claims"));
+    assert!(!said.contains("claims"));
     let dir = scratch("report-docking-claims");
-    let mut named = Made::default();
+    let mut named = HandMadeTables::default();
     for seed in 0..7 {
         named.test("docking-taught", "dock", seed, (150, 3_000, &[("A", 20, 19)]));
     }

@@ -1,8 +1,9 @@
-//! Statistics against NumPy, SciPy, rliable, lifelines and published tables; coverage of intervals by simulation.
+//! Statistics against NumPy, rliable, statsmodels, lifelines and published tables; coverage of intervals by simulation.
+#![cfg(feature = "report")]
 
 mod coverage;
-mod golden;
 mod intervals;
+mod rliable;
 mod selection;
 mod survival;
 

@@ -37,7 +37,7 @@ fn shares_and_held_out_means_are_those_of_all_resamples() {
     close(selection.out_of_bag, outside, 0.015);
     // What was chosen for being high is lower on other seeds.
     assert!(selection.out_of_bag < selection.means[1] - 0.05, "{}", selection.out_of_bag);
-    close(selection.behind[2].0, 0.6875 - 0.3375, 1e-12);
+    close(selection.behind[2].value, 0.6875 - 0.3375, 1e-12);
     assert!(selection.indistinguishable(0) && selection.indistinguishable(1));
 }
 
@@ -51,7 +51,7 @@ fn a_constant_lead_decides() {
     let selection = select(&[&behind, &best, &noisy]).unwrap();
     assert_eq!((selection.best, selection.undecided()), (1, 2));
     assert!(!selection.indistinguishable(0) && selection.indistinguishable(2));
-    close(selection.behind[0].1.low, 0.01, 1e-12);
+    close(selection.behind[0].low, 0.01, 1e-12);
     assert_eq!(selection.chosen[0], 0.0);
 }
 

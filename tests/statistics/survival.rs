@@ -1,7 +1,7 @@
 //! Kaplan and Meier's estimate against published tables and lifelines 0.30.3.
 
 use crate::close;
-use skilltree::report::statistics::{Observation, Survival};
+use skilltree::report::statistics::{SurvivalCurve, TimeToEvent};
 
 /// Weeks of remission of leukaemia (Freireich et al. 1963), as every textbook works them: 6-mercaptopurine.
 const TREATED: [(u32, bool); 21] = [
@@ -30,9 +30,9 @@ const TREATED: [(u32, bool); 21] = [
 /// The same, placebo: nobody is censored.
 const PLACEBO: [u32; 21] = [1, 1, 2, 2, 3, 4, 4, 5, 5, 8, 8, 8, 8, 11, 11, 12, 12, 15, 17, 22, 23];
 
-fn survival(seen: &[(u32, bool)]) -> Survival {
-    let seen = seen.iter().map(|&(time, reached)| Observation { time: f64::from(time), reached });
-    Survival::new(&seen.collect::<Vec<_>>())
+fn survival(seen: &[(u32, bool)]) -> SurvivalCurve {
+    let seen = seen.iter().map(|&(time, reached)| TimeToEvent { time: f64::from(time), reached });
+    SurvivalCurve::new(&seen.collect::<Vec<_>>())
 }
 
 #[test]
@@ -53,10 +53,10 @@ fn remission_under_treatment_is_as_published() {
     assert_eq!(curve.steps.len(), published.len());
     for (step, (time, at_risk, events, share, error, low, high)) in curve.steps.iter().zip(published) {
         assert_eq!((step.time, step.at_risk, step.events), (time, at_risk, events));
-        close(step.survival, share, 1e-12);
+        close(step.share.value, share, 1e-12);
         close(step.error, error, 5.1e-5);
-        close(step.band.low, low, 1e-12);
-        close(step.band.high, high, 1e-12);
+        close(step.share.low, low, 1e-12);
+        close(step.share.high, high, 1e-12);
     }
     assert_eq!((curve.quantile(0.5), curve.quantile_interval(0.5)), (Some(23.0), (Some(13.0), None)));
     assert_eq!((curve.quantile(0.25), curve.quantile_interval(0.25)), (Some(13.0), (Some(6.0), Some(22.0))));
@@ -72,12 +72,12 @@ fn remission_under_placebo_is_as_published() {
         (8.0, 0.3809523809523809, 0.1830665488203943, 0.5777886777458309),
         (22.0, 0.047619047619047616, 0.003324463042531178, 0.1970449056989461),
     ] {
-        close(at(time).survival, share, 1e-12);
-        close(at(time).band.low, low, 1e-12);
-        close(at(time).band.high, high, 1e-12);
+        close(at(time).share.value, share, 1e-12);
+        close(at(time).share.low, low, 1e-12);
+        close(at(time).share.high, high, 1e-12);
     }
     let last = curve.steps.last().unwrap();
-    assert_eq!((last.survival, last.error, last.band.low, last.band.high), (0.0, 0.0, 0.0, at(22.0).band.high));
+    assert_eq!((last.share.value, last.error, last.share.low, last.share.high), (0.0, 0.0, 0.0, at(22.0).share.high));
 }
 
 /// Nobody leaves early: the curve is the share of learners that are not there yet.
@@ -86,8 +86,8 @@ fn without_early_censoring_the_curve_is_a_plain_share() {
     let curve = survival(&[(10, true), (20, true), (20, true), (50, false), (50, false)]);
     let steps: Vec<_> = curve.steps.iter().map(|step| (step.time, step.at_risk)).collect();
     assert_eq!(steps, [(10.0, 5), (20.0, 4)]);
-    close(curve.steps[0].survival, 0.8, 1e-12);
-    close(curve.steps[1].survival, 0.4, 1e-12);
+    close(curve.steps[0].share.value, 0.8, 1e-12);
+    close(curve.steps[1].share.value, 0.4, 1e-12);
     // 0.6 got there in the end, so 0.7 never did, and exactly 0.6 by 20.
     assert_eq!((curve.quantile(0.6), curve.quantile(0.7), curve.quantile(0.2)), (Some(20.0), None, Some(10.0)));
 }

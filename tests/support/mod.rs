@@ -11,8 +11,8 @@ const CUTS: [&str; 6] = [
     "skill.dock.trials=6",
     "evaluate.at=[0, 3]",
     "evaluate.episodes=5",
-    "teacher.episodes=20",
-    "teacher.bank=32",
+    "teacher.eval_episodes=20",
+    "teacher.lessons=32",
 ];
 
 /// The program, in a folder.

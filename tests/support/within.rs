@@ -5,8 +5,9 @@ use skilltree::config::plan::Plan;
 use skilltree::config::{Overrides, load};
 use skilltree::run_folder::file_system::Disk;
 use skilltree::run_folder::{Provenance, RunFolder, State};
-use skilltree::train::batch_group::{Group, groups};
-use skilltree::train::run::{Observer, Options, RunError, run};
+use skilltree::train::batch_group::{BatchGroup, groups};
+use skilltree::train::callbacks::{Callbacks, Signal};
+use skilltree::train::run::{Options, RunError, run};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -17,30 +18,21 @@ const CUTS: [&str; 7] = [
     "skill.dock.trials=2",
     "evaluate.at=[0, 2]",
     "evaluate.episodes=3",
-    "teacher.episodes=4",
-    "teacher.bank=16",
+    "teacher.eval_episodes=4",
+    "teacher.lessons=16",
 ];
 
 /// An experiment that is ready to run.
 pub(crate) struct Experiment {
     pub(crate) plan: Plan,
-    pub(crate) groups: Vec<Group>,
-}
-
-struct Nobody;
-
-impl Observer for Nobody {
-    fn trials(&mut self, _: u64) {}
-    fn committed(&mut self, _: usize) {}
+    pub(crate) groups: Vec<BatchGroup>,
 }
 
 struct Impatient;
 
-impl Observer for Impatient {
-    fn trials(&mut self, _: u64) {}
-    fn committed(&mut self, _: usize) {}
-    fn stop(&mut self) -> bool {
-        true
+impl Callbacks for Impatient {
+    fn progress(&mut self, _: u64) -> Signal {
+        Signal::Stop
     }
 }
 
@@ -60,7 +52,7 @@ impl Experiment {
 
     /// What the program does between reading the config and reporting: a learner is a cohort, so that there are parts.
     pub(crate) fn run(&self, disk: &Arc<dyn Disk>, dir: &Path) -> Result<(), RunError> {
-        self.watched(disk, dir, &mut Nobody)
+        self.watched(disk, dir, &mut ())
     }
 
     /// As [`Experiment::run`], but told to stop as soon as a learner has begun: a checkpoint is left.
@@ -68,7 +60,7 @@ impl Experiment {
         self.watched(disk, dir, &mut Impatient)
     }
 
-    fn watched(&self, disk: &Arc<dyn Disk>, dir: &Path, observer: &mut dyn Observer) -> Result<(), RunError> {
+    fn watched(&self, disk: &Arc<dyn Disk>, dir: &Path, callbacks: &mut dyn Callbacks) -> Result<(), RunError> {
         let folder = self.open(disk, dir)?;
         if folder.state() == State::Complete {
             return Ok(());
@@ -76,7 +68,7 @@ impl Experiment {
         let mut backend = CpuBackend::new(1, None).map_err(RunError::Backend)?;
         let provenance = Provenance { seeds: self.plan.seeds.clone(), ..Provenance::default() };
         let options = Options { cohort: Some(1), ..Options::default() };
-        run(&self.plan, &self.groups, folder, &mut backend, options, provenance, observer)
+        run(&self.plan, &self.groups, folder, &mut backend, options, provenance, callbacks)
     }
 }
 

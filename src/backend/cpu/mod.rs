@@ -23,12 +23,8 @@ pub fn cpu_backend(threads: usize, iterations: Option<u32>) -> Result<HostBacken
 }
 
 /// The tuned forms.
-pub const CPU: HostForms = HostForms {
-    kind: "cpu",
-    instructions,
-    hot: HotForms { draw_step, observe, move_body, forward, backward },
-    step,
-};
+pub const CPU: HostForms =
+    HostForms { kind: "cpu", instructions, hot: HotForms { draw_step, observe, move_body, forward, backward }, step };
 
 /// Compiles a function for each instruction set.
 ///

@@ -77,67 +77,77 @@ pub const NAMES: [&str; ANSWER_WORDS] = [
 /// so devices need not agree on it.
 pub const SUBNORMAL: &str = "a subnormal product";
 
-fn put(answer: &mut Answer, place: usize, value: f32) {
-    answer[place] = value.to_bits();
+/// The answers of one lane.
+struct LaneAnswers<'a> {
+    answers: &'a mut Answer,
 }
 
-fn functions(answer: &mut Answer, x: f32, p: f32, angle: f32, tiny: f32) {
-    put(answer, 0, flush(tiny));
-    put(answer, 1, exponential(x));
-    put(answer, 2, ln(p));
-    put(answer, 3, reciprocal(p));
-    put(answer, 4, reciprocal_sqrt(p));
-    put(answer, 5, square_root(p));
-    put(answer, 6, square_root(x));
-    put(answer, 7, tanh(x));
-    let turn = sin_cos(angle);
-    put(answer, 8, turn.0);
-    put(answer, 9, turn.1);
-    put(answer, 10, wrap_degrees(angle - 360.0));
-}
-
-fn integers(answer: &mut Answer, words: [u32; 4], key: [u32; 2]) {
-    let block = philox(words, key);
-    answer[11..15].copy_from_slice(&block);
-    answer[15] = mul_high(words[0], words[1]);
-    answer[16] = below(words[2], 1000);
-    put(answer, 17, unit(words[3]));
-    put(answer, 18, noise(0, words[0], words[1]));
-    put(answer, 19, noise(1, words[0], words[1]));
-    put(answer, 20, words[0] as f32);
-    put(answer, 21, words[1] as i32 as f32);
-}
-
-fn conversions(answer: &mut Answer, x: f32, a: f32) {
-    answer[22] = (x.abs() * 1000.0) as u32;
-    answer[23] = (x * 1000.0) as i32 as u32;
-    put(answer, 24, if x < 0.0 { -a } else { a });
-}
-
-fn shapes(answer: &mut Answer, a: f32, b: f32, c: f32, d: f32) {
-    put(answer, 25, a * b + c);
-    put(answer, 26, c - a * b);
-    put(answer, 27, (a - 1.1) + 0.3);
-    put(answer, 28, (1.1 - a) + 0.3);
-    put(answer, 29, (1.1 + a * b) + 0.3);
-    put(answer, 30, (a * 1.1) * 0.7);
-    put(answer, 31, ((a * 1.1) * b) * 0.7);
-    put(answer, 32, (a * b) * 0.7);
-    put(answer, 33, (a + c) + 1.0);
-    put(answer, 34, (c * (a * a) + a) + 1.0);
-    put(answer, 35, (a + b) - a);
-    put(answer, 36, (a + 12_582_912.0) - 12_582_912.0);
-    put(answer, 37, a * b + a * c);
-    put(answer, 38, (1.0 - d) * a + d * b);
-    put(answer, 39, a + (c + 1.0));
-    put(answer, 40, a * (b * 0.7));
-    let mut sum = a;
-    for _turn in 0..8 {
-        sum += b * c;
-        sum *= d;
+impl LaneAnswers<'_> {
+    fn put(&mut self, place: usize, value: f32) {
+        self.answers[place] = value.to_bits();
     }
-    put(answer, 41, sum);
-    put(answer, 42, dot_of([a, b, c], [d, a, b]));
+
+    fn functions(&mut self, x: f32, p: f32, angle: f32, tiny: f32) {
+        self.put(0, flush(tiny));
+        self.put(1, exponential(x));
+        self.put(2, ln(p));
+        self.put(3, reciprocal(p));
+        self.put(4, reciprocal_sqrt(p));
+        self.put(5, square_root(p));
+        self.put(6, square_root(x));
+        self.put(7, tanh(x));
+        let turn = sin_cos(angle);
+        self.put(8, turn.0);
+        self.put(9, turn.1);
+        self.put(10, wrap_degrees(angle - 360.0));
+    }
+
+    fn integers(&mut self, words: [u32; 4], key: [u32; 2]) {
+        let block = philox(words, key);
+        self.answers[11] = block[0];
+        self.answers[12] = block[1];
+        self.answers[13] = block[2];
+        self.answers[14] = block[3];
+        self.answers[15] = mul_high(words[0], words[1]);
+        self.answers[16] = below(words[2], 1000);
+        self.put(17, unit(words[3]));
+        self.put(18, noise(0, words[0], words[1]));
+        self.put(19, noise(1, words[0], words[1]));
+        self.put(20, words[0] as f32);
+        self.put(21, words[1] as i32 as f32);
+    }
+
+    fn conversions(&mut self, x: f32, a: f32) {
+        self.answers[22] = (x.abs() * 1000.0) as u32;
+        self.answers[23] = (x * 1000.0) as i32 as u32;
+        self.put(24, if x < 0.0 { -a } else { a });
+    }
+
+    fn shapes(&mut self, a: f32, b: f32, c: f32, d: f32) {
+        self.put(25, a * b + c);
+        self.put(26, c - a * b);
+        self.put(27, (a - 1.1) + 0.3);
+        self.put(28, (1.1 - a) + 0.3);
+        self.put(29, (1.1 + a * b) + 0.3);
+        self.put(30, (a * 1.1) * 0.7);
+        self.put(31, ((a * 1.1) * b) * 0.7);
+        self.put(32, (a * b) * 0.7);
+        self.put(33, (a + c) + 1.0);
+        self.put(34, (c * (a * a) + a) + 1.0);
+        self.put(35, (a + b) - a);
+        self.put(36, (a + 12_582_912.0) - 12_582_912.0);
+        self.put(37, a * b + a * c);
+        self.put(38, (1.0 - d) * a + d * b);
+        self.put(39, a + (c + 1.0));
+        self.put(40, a * (b * 0.7));
+        let mut sum = a;
+        for _turn in 0..8 {
+            sum += b * c;
+            sum *= d;
+        }
+        self.put(41, sum);
+        self.put(42, dot_of([a, b, c], [d, a, b]));
+    }
 }
 
 fn dot_of(u: [f32; 3], v: [f32; 3]) -> f32 {
@@ -151,11 +161,12 @@ fn lanes(answers: &mut [Answer; LANES], x: &[f32; LANES], words: &[u32; LANES]) 
     partials[0] = *x;
     partials[1] = x.map(|x| x * x);
     lanes_sums(&mut partials, 2, LANES);
-    for answer in answers {
-        put(answer, 43, least);
-        answer[44] = bits;
-        put(answer, 45, partials[0][0]);
-        put(answer, 46, partials[1][0]);
+    for answers in answers {
+        let mut own = LaneAnswers { answers };
+        own.put(43, least);
+        own.answers[44] = bits;
+        own.put(45, partials[0][0]);
+        own.put(46, partials[1][0]);
     }
 }
 
@@ -165,11 +176,12 @@ pub fn arithmetic_check(questions: &[Question; LANES]) -> [Answer; LANES] {
     for (answer, question) in answers.iter_mut().zip(questions) {
         let [x, p, angle, tiny, a, b, c, d] = std::array::from_fn(|word| f32::from_bits(question[word]));
         let words = [question[8], question[9], question[10], question[11]];
-        functions(answer, x, p, angle, tiny);
-        integers(answer, words, [words[2], words[3]]);
-        conversions(answer, x, a);
-        shapes(answer, a, b, c, d);
-        put(answer, 47, tiny * d);
+        let mut own = LaneAnswers { answers: answer };
+        own.functions(x, p, angle, tiny);
+        own.integers(words, [words[2], words[3]]);
+        own.conversions(x, a);
+        own.shapes(a, b, c, d);
+        own.put(47, tiny * d);
     }
     let x = std::array::from_fn(|lane| f32::from_bits(questions[lane][0]));
     lanes(&mut answers, &x, &std::array::from_fn(|lane| questions[lane][8]));

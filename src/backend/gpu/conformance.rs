@@ -5,9 +5,9 @@ use super::arithmetic_check::{ANSWER_WORDS, Answer, NAMES, QUESTION_WORDS, Quest
 use super::device::Device;
 use super::loop_limit::{self, BOUNDS, loop_limit};
 use super::pipeline::Pipeline;
-use super::source::{LOOP_LIMIT, ARITHMETIC_CHECK};
+use super::source::{ARITHMETIC_CHECK, LOOP_LIMIT};
 use crate::backend::BackendError;
-use crate::backend::parity::UNWRITTEN;
+use crate::backend::UNWRITTEN;
 use crate::layout::LANES;
 use crate::math::rng::philox;
 use bytemuck::Zeroable;

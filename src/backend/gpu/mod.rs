@@ -29,7 +29,7 @@ use in_flight::{Flight, IN_FLIGHT, Rounds, Traffic};
 use pipeline_cache::Stage;
 use run_evaluation::finish;
 use shards::{Common, Shard};
-use source::{TRAIN, EVALUATE, Kernel, STEP};
+use source::{EVALUATE, Kernel, STEP, TRAIN};
 use std::ops::Range;
 use std::time::{Duration, Instant};
 use wgpu::BufferUsages;

@@ -145,7 +145,7 @@ pub fn decorate(words: &[u32]) -> Vec<u32> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::source::{TRAIN, KERNELS};
+    use super::super::source::{KERNELS, TRAIN};
     use super::*;
 
     fn count(words: &[u32], wanted: impl Fn(u32, &[u32]) -> bool) -> usize {

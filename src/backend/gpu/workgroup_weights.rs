@@ -21,7 +21,7 @@ fn words(plan: &SkillShape, params: &HyperParams) -> u32 {
 /// Words that each skill of each learner takes, with the skill's number; none where it is not trained.
 fn trained(cohort: &Cohort) -> impl Iterator<Item = (usize, u32)> {
     let skills = cohort.params.chunks(cohort.skills.max(1)).flat_map(|own| own.iter().enumerate());
-    let trained = skills.filter(|(_, params)| params.trials > 0 || params.taught_passes * params.lessons > 0);
+    let trained = skills.filter(|(_, params)| params.trials > 0 || params.pretrain_epochs * params.lessons > 0);
     trained.map(|(skill, params)| (skill, words(&cohort.shared.skills[skill], params)))
 }
 

@@ -93,11 +93,11 @@ pub(super) fn replay(learners: u32) -> Result<(Vec<ExportTensor>, Map<String, Va
         "transitions": replay.transitions() * u64::from(PASSES),
         "gamma": params.gamma,
         "lambda": params.lambda,
-        "rate": params.rate,
+        "rate": params.learning_rate,
         "beta1": params.beta1,
         "beta2": params.beta2,
         "epsilon2": params.epsilon2,
-        "target_limit": params.target_limit,
+        "target_clip": params.target_clip,
         "hidden": LANES,
     });
     Ok((tensors, object(numbers)))

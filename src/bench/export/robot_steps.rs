@@ -8,7 +8,7 @@ use crate::bench::{BenchError, compare};
 use crate::env::observe::{DRAW_ACTUATOR, DRAW_COMPASS, DRAW_LIGHT, DRAW_SONAR};
 use crate::layout::{RAYS, Robot};
 use crate::math::rng::{Purpose, StepRandom, Stream, coarse_noise, noise};
-use crate::train::observation::Senses;
+use crate::train::observation::SensorValues;
 use safetensors::tensor::Dtype;
 use serde_json::{Map, Value, json};
 
@@ -81,7 +81,7 @@ pub(super) fn robot_steps() -> Result<(Vec<ExportTensor>, Map<String, Value>), B
         }
         pose.extend(poses(&walk));
         for robot in &walk.robots {
-            let senses = Senses::of(robot);
+            let senses = SensorValues::of(robot);
             bumpers.extend(senses.bumpers);
             events.push(robot.events as u8);
             sonar.extend(senses.sonar.map(|reading| reading as u8));

@@ -2,7 +2,7 @@
 
 use crate::config::keys::{self, Allowed};
 use crate::config::set;
-use crate::toml::document::{Node, Origin};
+use crate::toml::document::{Node, SourceSpan};
 use crate::toml::error::{ConfigError, nearest, suggest};
 
 /// First parts of the keys that arms have of their own.
@@ -16,11 +16,11 @@ const MEMBERS: [(&str, Allowed); 3] = [
 
 /// The names that paths are made of.
 #[derive(Debug)]
-pub(super) struct Names<'a> {
+pub(super) struct AxisNames<'a> {
     skills: Vec<&'a str>,
 }
 
-impl<'a> Names<'a> {
+impl<'a> AxisNames<'a> {
     /// From the complete config.
     pub(super) fn new(base: &'a Node) -> Self {
         Self { skills: set::names(base, "skill") }
@@ -33,7 +33,7 @@ impl<'a> Names<'a> {
             ["skill", _, member] => MEMBERS.iter().any(|(name, _)| name == member),
             _ => {
                 let start = path.join(".") + ".";
-                keys::ALL.iter().any(|key| key.path.starts_with(&start))
+                keys::all().any(|key| key.path.starts_with(&start))
             }
         }
     }
@@ -42,7 +42,7 @@ impl<'a> Names<'a> {
     ///
     /// # Errors
     /// If there is no such key, or if it is the same at all points.
-    pub(super) fn allowed(&self, path: &[&str], origin: &Origin) -> Result<Allowed, ConfigError> {
+    pub(super) fn allowed(&self, path: &[&str], origin: &SourceSpan) -> Result<Allowed, ConfigError> {
         let key = path.join(".");
         if let ["skill", skill, ..] = path
             && !self.skills.contains(skill)
@@ -60,9 +60,9 @@ impl<'a> Names<'a> {
             _ => key.clone(),
         };
         let first = path.first().copied().unwrap_or_default();
-        match keys::ALL.iter().find(|entry| entry.path == known) {
+        match keys::all().find(|entry| entry.path == known) {
             Some(entry) if OWN.contains(&first) => return Ok(entry.allowed),
-            _ if !OWN.contains(&first) && keys::ALL.iter().any(|entry| entry.path.split('.').next() == Some(first)) => {
+            _ if !OWN.contains(&first) && keys::is_group(first) => {
                 let hint = format!("an axis may run over the keys of {}", crate::toml::error::list(&OWN));
                 return Err(origin.error(format!("`{key}` is the same at all points"), hint));
             }
@@ -80,10 +80,10 @@ impl<'a> Names<'a> {
 
     /// All keys that may be axes; of skills, those of the one that the path names.
     fn all(&self, path: &[&str]) -> Vec<String> {
-        let own = keys::ALL.iter().filter(|key| key.path.split('.').next().is_some_and(|first| OWN.contains(&first)));
+        let own = keys::all().filter(|key| key.path.split('.').next().is_some_and(|first| OWN.contains(&first)));
         let mut all: Vec<String> = own.map(|key| key.path.replace('*', path.get(1).unwrap_or(&"*"))).collect();
         if let ["skill", skill, ..] = path {
-            let learning = keys::ALL.iter().filter(|key| key.path.starts_with("learning."));
+            let learning = keys::all().filter(|key| key.path.starts_with("learning."));
             all.extend(learning.map(|key| format!("skill.{skill}.{}", key.path)));
         }
         all

@@ -1,10 +1,10 @@
 //! Puts the values of a point into an arm's config.
 
-use super::Sweep;
+use super::SweepSource;
 use crate::toml::document::{Node, Value};
 
 /// Lays a point over a tree: every other key stays, also beside a member of an inline table.
-pub(in crate::config) fn lay(tree: &mut Node, sweep: &Sweep<'_>, point: &[usize]) {
+pub(in crate::config) fn lay(tree: &mut Node, sweep: &SweepSource<'_>, point: &[usize]) {
     for (axis, value) in sweep.axes.iter().zip(sweep.values(point)) {
         if has(tree, &axis.path) {
             put(tree, &axis.path, value);

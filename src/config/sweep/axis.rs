@@ -1,13 +1,14 @@
 //! One axis: a key, and the values that it takes.
 
-use super::MOST;
-use super::allowed_keys::Names;
+use super::allowed_keys::AxisNames;
 use crate::config::keys::Allowed;
 use crate::config::plan::Scale;
-use crate::toml::document::{Entry, Node, Origin, Value};
+use crate::toml::document::{KeyValue, Node, SourceSpan, Value};
 use crate::toml::error::ConfigError;
 use crate::toml::reader::Item;
 
+/// Most points of a sweep, and most values of an axis.
+pub(super) const MAX_POINTS: usize = 1 << 16;
 /// Key of an axis that lists its values beside a label.
 pub(super) const VALUES: &str = "values";
 const SHAPE: &str = "write [a, b, c], or { from = a, to = b, steps = n }, with scale = \"log\" if wanted";
@@ -16,7 +17,7 @@ const DIGITS: usize = 9;
 
 /// A key of the config that differs between points.
 #[derive(Debug)]
-pub(in crate::config) struct Axis<'a> {
+pub(in crate::config) struct AxisSource<'a> {
     /// Dotted path.
     pub(in crate::config) key: String,
     /// Its parts.
@@ -42,11 +43,11 @@ pub(super) struct Range {
 
 /// Finds the axes at and below an entry whose table has the path `above`.
 pub(super) fn collect<'a>(
-    entry: &'a Entry,
+    entry: &'a KeyValue,
     item: &Item<'a>,
     above: &[&str],
-    names: &Names<'_>,
-    axes: &mut Vec<Axis<'a>>,
+    names: &AxisNames<'_>,
+    axes: &mut Vec<AxisSource<'a>>,
 ) -> Result<(), ConfigError> {
     let mut path = above.to_vec();
     path.push(&entry.key);
@@ -61,10 +62,17 @@ pub(super) fn collect<'a>(
     Ok(())
 }
 
-fn read<'a>(path: Vec<String>, item: &Item<'a>, allowed: Allowed) -> Result<Axis<'a>, ConfigError> {
+fn read<'a>(path: Vec<String>, item: &Item<'a>, allowed: Allowed) -> Result<AxisSource<'a>, ConfigError> {
     let key = path.join(".");
-    let mut axis =
-        Axis { label: key.clone(), key, path, scale: Scale::List, values: Vec::new(), range: None, item: item.clone() };
+    let mut axis = AxisSource {
+        label: key.clone(),
+        key,
+        path,
+        scale: Scale::List,
+        values: Vec::new(),
+        range: None,
+        item: item.clone(),
+    };
     match &item.node.value {
         Value::List(_) => axis.values = listed(item)?,
         Value::Table(_) => axis.spread(item, allowed)?,
@@ -76,7 +84,7 @@ fn read<'a>(path: Vec<String>, item: &Item<'a>, allowed: Allowed) -> Result<Axis
     Ok(axis)
 }
 
-impl Axis<'_> {
+impl AxisSource<'_> {
     /// Number of its values.
     pub(in crate::config) fn size(&self) -> usize {
         self.values.len()
@@ -127,7 +135,7 @@ impl Axis<'_> {
             let hint = "a logarithmic axis begins above 0; raise `from`, or drop `scale`";
             return Err(item.error(format!("`{}` begins at {from}", item.name), hint));
         }
-        let steps = table.optional("steps").map(|steps| steps.whole(2, MOST as u32)).transpose()?;
+        let steps = table.optional("steps").map(|steps| steps.whole(2, MAX_POINTS as u32)).transpose()?;
         table.finish()?;
         let range = Range { from, to, log, whole };
         self.scale = if log { Scale::Log } else { Scale::Linear };
@@ -146,7 +154,7 @@ impl Axis<'_> {
 
 impl Range {
     /// The value at a share of the way, 0 to 1.
-    pub(super) fn value(&self, share: f64, origin: &Origin) -> Node {
+    pub(super) fn value(&self, share: f64, origin: &SourceSpan) -> Node {
         let Self { from, to, log, whole } = *self;
         // The library's functions give the same bits on every host.
         let exact = if log {
@@ -184,8 +192,10 @@ fn listed(item: &Item<'_>) -> Result<Vec<Node>, ConfigError> {
     if values.is_empty() {
         return Err(item.error(format!("`{}` is empty", item.name), SHAPE));
     }
-    if values.len() > MOST {
-        return Err(item.error(format!("`{}` has {} values", item.name, values.len()), format!("at most {MOST} fit")));
+    if values.len() > MAX_POINTS {
+        return Err(
+            item.error(format!("`{}` has {} values", item.name, values.len()), format!("at most {MAX_POINTS} fit"))
+        );
     }
     Ok(values)
 }

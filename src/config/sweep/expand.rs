@@ -1,9 +1,9 @@
 //! The arms of a config at the points of its sweep.
 
-use super::{Axis, Sweep, has, lay};
-use crate::config::arms::Arms;
-use crate::config::learning::Idle;
-use crate::config::plan::{Arm, Child};
+use super::{AxisSource, SweepSource, has, lay};
+use crate::config::arm::ArmReader;
+use crate::config::plan::{ArmPlan, Child};
+use crate::config::unused_keys::UnusedKeys;
 use crate::config::worlds::Worlds;
 use crate::toml::document::Node;
 use crate::toml::error::{ConfigError, suggest};
@@ -11,90 +11,87 @@ use std::collections::HashSet;
 
 /// An arm without the sweep, and its complete config.
 pub(in crate::config) struct Base<'a> {
-    pub(in crate::config) arm: &'a Arm,
+    pub(in crate::config) arm: &'a ArmPlan,
     pub(in crate::config) tree: Node,
     /// Whether it is chosen. The others show what an axis is for where one arm is run alone.
     pub(in crate::config) run: bool,
 }
 
-impl Arms<'_> {
-    /// Reads each arm at its points. An arm that an axis does not concern is the same at many points, and is run at the
-    /// first of them alone.
-    pub(in crate::config) fn spread(
-        &self,
-        mut bases: Vec<Base<'_>>,
-        sweep: &Sweep<'_>,
-        worlds: &mut Worlds<'_>,
-        idle: &mut Idle,
-    ) -> Result<Vec<Arm>, ConfigError> {
-        for axis in &sweep.axes {
-            if !bases.iter().any(|base| is_concerned(base.arm, &base.tree, axis, sweep)) {
-                return Err(axis.item.error(format!("no arm has `{}`", axis.key), hint(axis, &bases)));
-            }
+/// Reads each arm at its points. An arm that an axis does not concern is the same at many points, and is run at the
+/// first of them alone.
+pub(in crate::config) fn at_points(
+    reader: &ArmReader<'_>,
+    mut bases: Vec<Base<'_>>,
+    sweep: &SweepSource<'_>,
+    worlds: &mut Worlds<'_>,
+    unused: &mut UnusedKeys,
+) -> Result<Vec<ArmPlan>, ConfigError> {
+    for axis in &sweep.axes {
+        if !bases.iter().any(|base| is_concerned(base.arm, &base.tree, axis, sweep)) {
+            return Err(axis.item.error(format!("no arm has `{}`", axis.key), hint(axis, &bases)));
         }
-        let mut arms = Vec::new();
-        for Base { arm, tree, .. } in bases.iter_mut().filter(|base| base.run) {
-            let own: Vec<usize> =
-                (0..sweep.axes.len()).filter(|axis| is_concerned(arm, tree, &sweep.axes[*axis], sweep)).collect();
-            let mut seen = HashSet::new();
-            for (number, point) in sweep.points.iter().enumerate() {
-                let new = own.len() == sweep.axes.len()
-                    || seen.insert(own.iter().map(|axis| point[*axis]).collect::<Vec<_>>());
-                if new && sweep.only.binary_search(&number).is_ok() {
-                    lay(tree, sweep, point);
-                    arms.push(self.arm((&arm.name, number as u32), tree, worlds, idle)?);
-                }
-            }
-        }
-        if let ([], Some(point)) = (&arms[..], sweep.only.first()) {
-            let message = format!("point {point} changes no arm that is run");
-            let hint =
-                "these arms do not have all the axes: run the first point with the same values on those they have";
-            return Err(sweep.item.error(message, hint));
-        }
-        bases.sort_by_key(|base| !base.run);
-        for (number, axis) in sweep.axes.iter().enumerate().filter(|(_, axis)| axis.size() > 1) {
-            if !self.changes(&mut bases, sweep, number, worlds, idle)? {
-                let message = format!("`{}` changes nothing in any arm", axis.key);
-                let hint = "nothing uses it, as momentum where the optimiser is adam; or all skills have their own: name the \
-                            skill, as in skill.dock.learning.rate";
-                return Err(axis.item.error(message, hint));
-            }
-        }
-        Ok(arms)
     }
+    let mut arms = Vec::new();
+    for Base { arm, tree, .. } in bases.iter_mut().filter(|base| base.run) {
+        let own: Vec<usize> =
+            (0..sweep.axes.len()).filter(|axis| is_concerned(arm, tree, &sweep.axes[*axis], sweep)).collect();
+        let mut seen = HashSet::new();
+        for (number, point) in sweep.points.iter().enumerate() {
+            let new =
+                own.len() == sweep.axes.len() || seen.insert(own.iter().map(|axis| point[*axis]).collect::<Vec<_>>());
+            if new && sweep.only.binary_search(&number).is_ok() {
+                lay(tree, sweep, point);
+                arms.push(reader.read((&arm.name, number as u32), tree, worlds, unused)?);
+            }
+        }
+    }
+    if let ([], Some(point)) = (&arms[..], sweep.only.first()) {
+        let message = format!("point {point} changes no arm that is run");
+        let hint = "these arms do not have all the axes: run the first point with the same values on those they have";
+        return Err(sweep.item.error(message, hint));
+    }
+    bases.sort_by_key(|base| !base.run);
+    for (number, axis) in sweep.axes.iter().enumerate().filter(|(_, axis)| axis.size() > 1) {
+        if !changes(reader, &mut bases, sweep, number, worlds, unused)? {
+            let message = format!("`{}` changes nothing in any arm", axis.key);
+            let hint = "nothing uses it, as momentum where the optimiser is adam; or all skills have their own: name the \
+                        skill, as in skill.dock.learning.learning_rate";
+            return Err(axis.item.error(message, hint));
+        }
+    }
+    Ok(arms)
+}
 
-    /// Whether at some point another value on one axis makes another arm.
-    fn changes(
-        &self,
-        bases: &mut [Base<'_>],
-        sweep: &Sweep<'_>,
-        axis: usize,
-        worlds: &mut Worlds<'_>,
-        idle: &mut Idle,
-    ) -> Result<bool, ConfigError> {
-        for point in &sweep.points {
-            let mut other = point.clone();
-            other[axis] = (point[axis] + 1) % sweep.axes[axis].size();
-            for Base { tree, run, .. } in &mut *bases {
-                let mut at = |point: &[usize]| {
-                    lay(tree, sweep, point);
-                    self.arm(("", 0), tree, worlds, idle)
-                };
-                match (at(point), at(&other)) {
-                    (Ok(one), Ok(another)) if one != another => return Ok(true),
-                    (Err(error), _) | (_, Err(error)) if *run => return Err(error),
-                    // An arm that is not run need not suit the points.
-                    _ => {}
-                }
+/// Whether at some point another value on one axis makes another arm.
+fn changes(
+    reader: &ArmReader<'_>,
+    bases: &mut [Base<'_>],
+    sweep: &SweepSource<'_>,
+    axis: usize,
+    worlds: &mut Worlds<'_>,
+    unused: &mut UnusedKeys,
+) -> Result<bool, ConfigError> {
+    for point in &sweep.points {
+        let mut other = point.clone();
+        other[axis] = (point[axis] + 1) % sweep.axes[axis].size();
+        for Base { tree, run, .. } in &mut *bases {
+            let mut at = |point: &[usize]| {
+                lay(tree, sweep, point);
+                reader.read(("", 0), tree, worlds, unused)
+            };
+            match (at(point), at(&other)) {
+                (Ok(one), Ok(another)) if one != another => return Ok(true),
+                (Err(error), _) | (_, Err(error)) if *run => return Err(error),
+                // An arm that is not run need not suit the points.
+                _ => {}
             }
         }
-        Ok(false)
     }
+    Ok(false)
 }
 
 /// Whether an arm has the key of an axis.
-fn is_concerned(arm: &Arm, tree: &Node, axis: &Axis<'_>, sweep: &Sweep<'_>) -> bool {
+fn is_concerned(arm: &ArmPlan, tree: &Node, axis: &AxisSource<'_>, sweep: &SweepSource<'_>) -> bool {
     let [first, skill, ..] = &axis.path[..] else { return true };
     // Another root may have other skills below it.
     let trained = first != "skill"
@@ -103,7 +100,7 @@ fn is_concerned(arm: &Arm, tree: &Node, axis: &Axis<'_>, sweep: &Sweep<'_>) -> b
     trained && has(tree, &axis.path)
 }
 
-fn hint(axis: &Axis<'_>, bases: &[Base<'_>]) -> String {
+fn hint(axis: &AxisSource<'_>, bases: &[Base<'_>]) -> String {
     let skill = axis.path.get(1).map_or("", String::as_str);
     let own = bases.iter().find_map(|base| base.arm.skills.iter().find(|own| own.name == skill).map(|own| (base, own)));
     match (own, axis.path.last()) {

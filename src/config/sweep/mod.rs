@@ -6,7 +6,7 @@
 //! [sweep]
 //! learning.gamma = [0.8, 0.9, 0.95]                                      # a list, also of words, flags or worlds
 //! robot.noise.sonar = { from = 0.0, to = 0.2, steps = 5 }                # evenly spread, both ends included
-//! learning.rate = { from = 1e-4, to = 1e-2, steps = 5, scale = "log" }   # evenly in the logarithm
+//! learning.learning_rate = { from = 1e-4, to = 1e-2, steps = 5, scale = "log" }   # evenly in the logarithm
 //! skill.recharge.applicable.dock = { values = [0.1, 0.2], label = "dock threshold" }
 //! ```
 //!
@@ -20,26 +20,23 @@ pub(super) mod expand;
 mod points;
 
 pub(super) use apply::{has, lay};
-pub(super) use axis::Axis;
+pub(super) use axis::AxisSource;
 
 use super::keys;
 use super::plan;
 use super::worlds::Worlds;
 use crate::toml::document::{Node, Value};
 use crate::toml::error::ConfigError;
-use crate::toml::reader::{Item, Section};
-use allowed_keys::Names;
-
-/// Most points of a sweep.
-pub(super) const MOST: usize = 1 << 16;
+use crate::toml::reader::{Item, KeyedTable};
+use allowed_keys::AxisNames;
 
 /// A sweep as read.
 #[derive(Debug)]
-pub(super) struct Sweep<'a> {
+pub(super) struct SweepSource<'a> {
     /// How the points lie.
     design: plan::Design,
     /// What differs.
-    pub(super) axes: Vec<Axis<'a>>,
+    pub(super) axes: Vec<AxisSource<'a>>,
     /// For each point, an index into the values of each axis.
     pub(super) points: Vec<Vec<usize>>,
     /// The points that are run, ascending.
@@ -49,10 +46,14 @@ pub(super) struct Sweep<'a> {
 }
 
 /// Reads the table `sweep`, if there is one. `base` is the complete config without arms.
-pub(super) fn read<'a>(node: Option<&'a Node>, base: &Node, run_seed: u32) -> Result<Option<Sweep<'a>>, ConfigError> {
+pub(super) fn read<'a>(
+    node: Option<&'a Node>,
+    base: &Node,
+    run_seed: u32,
+) -> Result<Option<SweepSource<'a>>, ConfigError> {
     let Some(node) = node else { return Ok(None) };
     let item = Item { name: "sweep".to_owned(), node };
-    let section = Section(item.table()?);
+    let section = KeyedTable(item.table()?);
     let design = match section.0.optional(keys::SWEEP_DESIGN.name()) {
         None => plan::Design::Grid,
         Some(item) if item.choice("designs", &["grid", "random"])? == 0 => plan::Design::Grid,
@@ -60,10 +61,10 @@ pub(super) fn read<'a>(node: Option<&'a Node>, base: &Node, run_seed: u32) -> Re
     };
     let count = section.0.optional(keys::SWEEP_POINTS.name());
     let only = section.0.optional(keys::SWEEP_ONLY.name());
-    let names = Names::new(base);
-    let mut axes: Vec<Axis<'a>> = Vec::new();
+    let names = AxisNames::new(base);
+    let mut axes: Vec<AxisSource<'a>> = Vec::new();
     for (entry, item) in section.0.all() {
-        if !keys::ALL.iter().any(|key| key.path == format!("sweep.{}", entry.key)) {
+        if !keys::all().any(|key| key.path == format!("sweep.{}", entry.key)) {
             axis::collect(entry, &item, &[], &names, &mut axes)?;
         }
     }
@@ -80,7 +81,7 @@ pub(super) fn read<'a>(node: Option<&'a Node>, base: &Node, run_seed: u32) -> Re
             Some(only) => points::chosen(&only, points.len())?,
             None => (0..points.len()).collect(),
         };
-        return Ok(Some(Sweep { design, axes, points, only, item }));
+        return Ok(Some(SweepSource { design, axes, points, only, item }));
     }
     match only {
         // `--point 0` is what a run without a sweep does.
@@ -89,7 +90,7 @@ pub(super) fn read<'a>(node: Option<&'a Node>, base: &Node, run_seed: u32) -> Re
     }
 }
 
-impl Sweep<'_> {
+impl SweepSource<'_> {
     /// Values of a point, axis by axis.
     pub(super) fn values(&self, point: &[usize]) -> Vec<&Node> {
         self.axes.iter().zip(point).map(|(axis, value)| &axis.values[*value]).collect()

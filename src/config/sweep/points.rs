@@ -1,9 +1,8 @@
 //! Which combinations of values are points.
 
-use super::MOST;
-use super::axis::{Axis, number, same};
+use super::axis::{AxisSource, MAX_POINTS, number, same};
 use crate::math::rng::{Purpose, Stream, draw};
-use crate::toml::document::{Node, Origin};
+use crate::toml::document::{Node, SourceSpan};
 use crate::toml::error::ConfigError;
 use crate::toml::reader::Item;
 use std::collections::BTreeSet;
@@ -12,7 +11,7 @@ use std::collections::BTreeSet;
 const PATIENCE: u32 = 64;
 
 /// All combinations, the last axis fastest. An index into the values of each axis.
-pub(super) fn grid(axes: &[Axis<'_>], origin: &Origin) -> Result<Vec<Vec<usize>>, ConfigError> {
+pub(super) fn grid(axes: &[AxisSource<'_>], origin: &SourceSpan) -> Result<Vec<Vec<usize>>, ConfigError> {
     let mut count = 1_usize;
     for axis in axes {
         if axis.values.is_empty() {
@@ -21,10 +20,10 @@ pub(super) fn grid(axes: &[Axis<'_>], origin: &Origin) -> Result<Vec<Vec<usize>>
         }
         count = count.saturating_mul(axis.values.len());
     }
-    if count > MOST {
+    if count > MAX_POINTS {
         let sizes: Vec<String> = axes.iter().map(|axis| axis.values.len().to_string()).collect();
         let message = format!("the sweep has {} points", sizes.join(" x "));
-        return Err(origin.error(message, format!("at most {MOST} fit; {OTHERWISE}")));
+        return Err(origin.error(message, format!("at most {MAX_POINTS} fit; {OTHERWISE}")));
     }
     let mut points = vec![Vec::new()];
     for axis in axes {
@@ -39,7 +38,7 @@ const OTHERWISE: &str = "take fewer values, or draw some: design = \"random\" an
 
 /// Distinct points drawn at random, each value uniformly from its axis. Gives the axes the values that were drawn.
 pub(super) fn random(
-    axes: &mut [Axis<'_>],
+    axes: &mut [AxisSource<'_>],
     sweep: &Item<'_>,
     count: Option<&Item<'_>>,
     run_seed: u32,
@@ -47,7 +46,7 @@ pub(super) fn random(
     let Some(count) = count else {
         return Err(sweep.error("a random sweep has no number of points", "add points = 100 to the table `sweep`"));
     };
-    let wanted = count.whole(1, MOST as u32)?;
+    let wanted = count.whole(1, MAX_POINTS as u32)?;
     let mut drawn: Vec<Vec<Node>> = Vec::new();
     let mut seen = BTreeSet::new();
     for attempt in 0..wanted.saturating_mul(PATIENCE) {
@@ -67,7 +66,7 @@ pub(super) fn random(
     for (place, axis) in axes.iter_mut().enumerate() {
         axis.keep(drawn.iter().map(|point| &point[place]));
     }
-    let value = |(axis, node): (&Axis<'_>, &Node)| axis.index_of(node);
+    let value = |(axis, node): (&AxisSource<'_>, &Node)| axis.index_of(node);
     Ok(drawn.iter().map(|point| axes.iter().zip(point).map(value).collect()).collect())
 }
 
@@ -80,7 +79,7 @@ fn share(run_seed: u32, attempt: u32, axis: usize) -> f64 {
     (u64::from(words[0]) << 21 | u64::from(words[1]) >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-impl Axis<'_> {
+impl AxisSource<'_> {
     fn draw(&self, share: f64) -> Node {
         match self.range {
             Some(range) if self.values.is_empty() => range.value(share, self.item.origin()),

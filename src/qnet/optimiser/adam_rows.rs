@@ -14,15 +14,7 @@ impl Workgroup<'_> {
     /// Finds, for each row of weights of net `number`, the factor that its gradient has in common and how far it moves
     /// along its mean gradient. The second moments of the rows are the first words of the third tensor. Lanes are hidden
     /// units, then rows.
-    fn row_step_sizes(
-        &mut self,
-        units: usize,
-        skill: u32,
-        number: u32,
-        output: u32,
-        errors: &NetErrors,
-        rate: f32,
-    ) {
+    fn row_step_sizes(&mut self, units: usize, skill: u32, number: u32, output: u32, errors: &NetErrors, rate: f32) {
         let s = skill as usize;
         for lane in 0..LANES {
             let own_activation = self.hidden[number as usize][lane];

@@ -1,8 +1,10 @@
 //! Claims on elementary skills: section V.
 
-use super::{Estimate, Found, MAIN, Rule, Verdict, at};
-use crate::report::numbers::{limit, number};
-use crate::report::statistics::sorted;
+use super::evidence::{ClaimRule, at};
+use super::verdict::{ClaimVerdict, Finding};
+use crate::report::comparison::MAIN;
+use crate::report::format::{limit, number, share};
+use crate::report::statistics::{mean_of, sorted};
 use crate::report::summary::Score;
 
 /// Success that counts as having learned a skill.
@@ -21,7 +23,7 @@ const GOOD: f64 = 0.75;
 /// Share of the planner's return that is good wall following.
 const FOLLOWING: f64 = 0.74;
 
-pub(super) const UNTAUGHT: Rule = Rule {
+pub(super) const UNTAUGHT: ClaimRule = ClaimRule {
     title: "docking untaught",
     says: "Without lessons, some robots never learn to dock within 300 trials, and the others need most of them.",
     rule: || {
@@ -37,8 +39,8 @@ pub(super) const UNTAUGHT: Rule = Rule {
     judge: |evidence| {
         let series = evidence.root("docking-untaught")?;
         let success = at(series, UNTAUGHT_TRIALS)?.values(Score::success);
-        let failing: Vec<f64> = success.iter().map(|&success| f64::from(u8::from(success < FAILED))).collect();
-        let failing = Estimate::new(&failing);
+        let fails = |&success: &f64| f64::from(u8::from(success < FAILED));
+        let failing = mean_of(&success.iter().map(fails).collect::<Vec<_>>());
         let learners = success.iter().zip(series.trials_to(LEARNED)).filter(|(success, _)| **success >= FAILED);
         // A seed that never got there needed more than all others.
         let trials: Vec<f64> = learners.map(|(_, trials)| trials.map_or(f64::INFINITY, f64::from)).collect();
@@ -50,11 +52,11 @@ pub(super) const UNTAUGHT: Rule = Rule {
             }
             median => format!("the others' median needs {} trials", number(median)),
         };
-        let in_range = (FAILING.0..=FAILING.1).contains(&failing.mean);
-        Ok(Found {
-            figures: vec![format!("{} of seeds fail", failing.share()), needs],
-            seeds: failing.seeds,
-            verdict: Verdict::of(&[in_range, median >= f64::from(TAUGHT_TRIALS)]),
+        let in_range = (FAILING.0..=FAILING.1).contains(&failing.value);
+        Ok(Finding {
+            figures: vec![format!("{} of seeds fail", share(failing)), needs],
+            seeds: success.len(),
+            verdict: ClaimVerdict::of(&[in_range, median >= f64::from(TAUGHT_TRIALS)]),
         })
     },
 };
@@ -64,7 +66,7 @@ fn upper_median(values: &[f64]) -> f64 {
     sorted(values).get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
-pub(super) const TAUGHT: Rule = Rule {
+pub(super) const TAUGHT: ClaimRule = ClaimRule {
     title: "docking taught",
     says: "With 10 lessons, docking is learned very well, generally within 150 trials.",
     rule: || {
@@ -76,17 +78,17 @@ pub(super) const TAUGHT: Rule = Rule {
     },
     judge: |evidence| {
         let series = evidence.root("docking-taught").or_else(|_| evidence.skill(MAIN, "dock"))?;
-        let cell = at(series, TAUGHT_TRIALS)?;
-        let success = Estimate::new(&cell.values(Score::success));
-        Ok(Found {
-            figures: vec![format!("{} achieved after {} trials", success.share(), cell.trials)],
-            seeds: success.seeds,
-            verdict: Verdict::from_limits(success.mean, VERY_GOOD, GOOD),
+        let test = at(series, TAUGHT_TRIALS)?;
+        let success = mean_of(&test.values(Score::success));
+        Ok(Finding {
+            figures: vec![format!("{} achieved after {} trials", share(success), test.trials)],
+            seeds: test.scores.len(),
+            verdict: ClaimVerdict::from_limits(success.value, VERY_GOOD, GOOD),
         })
     },
 };
 
-pub(super) const OTHER_SKILLS: Rule = Rule {
+pub(super) const OTHER_SKILLS: ClaimRule = ClaimRule {
     title: "doors and walls",
     says: "With lessons, passing doors and following walls are learned effectively too.",
     rule: || {
@@ -98,18 +100,19 @@ pub(super) const OTHER_SKILLS: Rule = Rule {
         )
     },
     judge: |evidence| {
-        let passing = Estimate::new(&evidence.skill(MAIN, "pass-door")?.last().values(Score::success));
-        let following = Estimate::new(&evidence.skill(MAIN, "follow-right")?.last().values(Score::return_per_trial));
+        let doors = evidence.skill(MAIN, "pass-door")?.last();
+        let passing = mean_of(&doors.values(Score::success));
+        let following = mean_of(&evidence.skill(MAIN, "follow-right")?.last().values(Score::return_per_trial));
         let bound = evidence.summary.skill("follow-right").and_then(|skill| skill.bound(MAIN));
         let bound = bound.map(|bound| bound.score.return_per_trial()).filter(|bound| *bound > 0.0);
         let bound = bound.ok_or("The planner has no return of `follow-right` to compare with.")?;
-        Ok(Found {
+        Ok(Finding {
             figures: vec![
-                format!("{} of doors passed", passing.share()),
-                format!("{} of the planner's return along walls", following.of_whole(bound)),
+                format!("{} of doors passed", share(passing)),
+                format!("{} of the planner's return along walls", share(following.over(bound))),
             ],
-            seeds: passing.seeds,
-            verdict: Verdict::of(&[passing.mean >= VERY_GOOD, following.mean >= FOLLOWING * bound]),
+            seeds: doors.scores.len(),
+            verdict: ClaimVerdict::of(&[passing.value >= VERY_GOOD, following.value >= FOLLOWING * bound]),
         })
     },
 };

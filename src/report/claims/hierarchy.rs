@@ -1,7 +1,10 @@
 //! Claims on the hierarchy, its two rules and its learning: sections I, VI and VII.
 
-use super::{Estimate, Found, MAIN, Rule, Verdict, at};
-use crate::report::numbers::limit;
+use super::evidence::{ClaimRule, at};
+use super::verdict::{ClaimVerdict, Finding};
+use crate::report::comparison::MAIN;
+use crate::report::format::{limit, share};
+use crate::report::statistics::mean_of;
 use crate::report::summary::Score;
 
 /// The paper's early moment, and success from rooms A and C that is good then.
@@ -19,7 +22,7 @@ const SAME: f64 = 0.1;
 const UNCRITICAL: [&str; 3] = ["low-thresholds", "high-thresholds", "learned-thresholds"];
 const EXCLUDING: &str = "excluding-thresholds";
 
-pub(super) const EARLY: Rule = Rule {
+pub(super) const EARLY: ClaimRule = ClaimRule {
     title: "tree, 20 trials",
     says: "Within 20 trials, the hierarchy connects from most places in rooms A and C.",
     rule: || {
@@ -31,21 +34,18 @@ pub(super) const EARLY: Rule = Rule {
         )
     },
     judge: |evidence| {
-        let cell = at(evidence.root(MAIN)?, EARLY_TRIALS)?;
-        let a = Estimate::new(&evidence.success_from(cell, "A")?);
-        let c = Estimate::new(&evidence.success_from(cell, "C")?);
-        Ok(Found {
-            figures: vec![
-                format!("{} from A", a.share()),
-                format!("{} from C, after {} trials", c.share(), cell.trials),
-            ],
-            seeds: cell.scores.len(),
-            verdict: Verdict::of(&[a.mean >= EARLY_A, c.mean >= EARLY_C]),
+        let test = at(evidence.root(MAIN)?, EARLY_TRIALS)?;
+        let a = mean_of(&evidence.success_from(test, "A")?);
+        let c = mean_of(&evidence.success_from(test, "C")?);
+        Ok(Finding {
+            figures: vec![format!("{} from A", share(a)), format!("{} from C, after {} trials", share(c), test.trials)],
+            seeds: test.scores.len(),
+            verdict: ClaimVerdict::of(&[a.value >= EARLY_A, c.value >= EARLY_C]),
         })
     },
 };
 
-pub(super) const NEARLY_OPTIMAL: Rule = Rule {
+pub(super) const NEARLY_OPTIMAL: ClaimRule = ClaimRule {
     title: "tree, 60 trials",
     says: "Within 60 trials, it is nearly optimal from everywhere.",
     rule: || {
@@ -57,33 +57,28 @@ pub(super) const NEARLY_OPTIMAL: Rule = Rule {
     },
     judge: |evidence| {
         let series = evidence.root(MAIN)?;
-        let cell = at(series, LATE_TRIALS)?;
+        let test = at(series, LATE_TRIALS)?;
         let skill = evidence.summary.arm(MAIN).and_then(|arm| evidence.summary.skill(&arm.root));
         let bound = skill.and_then(|skill| skill.bound(MAIN)).filter(|bound| bound.score.successes > 0);
         let bound = bound.ok_or("The planner has no tests to compare with.")?;
-        let share = |values: &[f64], whole: f64| {
-            let success = Estimate::new(values);
-            (success.of_whole(whole), success.mean >= NEARLY * whole)
+        let of_planner = |values: &[f64], whole: f64| {
+            let success = mean_of(values);
+            (share(success.over(whole)), success.value >= NEARLY * whole)
         };
-        let (overall, near) = share(&cell.values(Score::success), bound.score.success());
-        let mut figures = vec![format!("after {} trials {overall} of the planner's success", cell.trials)];
+        let (overall, near) = of_planner(&test.values(Score::success), bound.score.success());
+        let mut figures = vec![format!("after {} trials {overall} of the planner's success", test.trials)];
         let mut everywhere = true;
         for (room, planner) in bound.rooms.iter().enumerate().filter(|(_, planner)| planner.successes > 0) {
             let name = &evidence.summary.rooms[room];
-            let (text, near) = share(&evidence.success_from(cell, name)?, planner.success());
+            let (text, near) = of_planner(&evidence.success_from(test, name)?, planner.success());
             figures.push(format!("{text} from {name}"));
             everywhere &= near;
         }
-        let verdict = match near {
-            true if everywhere => Verdict::Holds,
-            true => Verdict::Partly,
-            false => Verdict::DoesNotHold,
-        };
-        Ok(Found { figures, seeds: cell.scores.len(), verdict })
+        Ok(Finding { figures, seeds: test.scores.len(), verdict: ClaimVerdict::surely(near && everywhere, near) })
     },
 };
 
-pub(super) const PERSISTENCE: Rule = Rule {
+pub(super) const PERSISTENCE: ClaimRule = ClaimRule {
     title: "persistence",
     says: "Without the Persistence Rule, performance is poor.",
     rule: || {
@@ -95,20 +90,15 @@ pub(super) const PERSISTENCE: Rule = Rule {
     },
     judge: |evidence| {
         let loss = evidence.main_minus("no-persistence")?;
-        let verdict = if loss.interval.low > 0.0 {
-            if loss.mean >= POOR { Verdict::Holds } else { Verdict::Partly }
-        } else {
-            Verdict::DoesNotHold
-        };
-        Ok(Found {
-            figures: vec![format!("`{MAIN}` minus `no-persistence`: {}", loss.points())],
+        Ok(Finding {
+            figures: vec![format!("`{MAIN}` minus `no-persistence`: {}", loss.words())],
             seeds: loss.seeds,
-            verdict,
+            verdict: ClaimVerdict::surely(loss.by.low > 0.0 && loss.by.value >= POOR, loss.by.low > 0.0),
         })
     },
 };
 
-pub(super) const THRESHOLDS: Rule = Rule {
+pub(super) const THRESHOLDS: ClaimRule = ClaimRule {
     title: "thresholds",
     says: "Thresholds of applicability are not critical, unless they are so high that they rule out the best skill.",
     rule: || {
@@ -126,16 +116,16 @@ pub(super) const THRESHOLDS: Rule = Rule {
             return Err(format!("There is none of the arms {}.", UNCRITICAL.map(|arm| format!("`{arm}`")).join(", ")));
         };
         let mut figures: Vec<String> =
-            there.iter().map(|(arm, lead)| format!("`{MAIN}` minus `{arm}`: {}", lead.points())).collect();
+            there.iter().map(|(arm, lead)| format!("`{MAIN}` minus `{arm}`: {}", lead.words())).collect();
         let excluded = evidence.main_minus(EXCLUDING).ok();
-        figures.extend(excluded.iter().map(|lead| format!("minus `{EXCLUDING}`: {}", lead.points())));
-        let same = there.iter().all(|(_, lead)| lead.mean.abs() <= SAME);
-        let worse = excluded.is_some_and(|lead| lead.interval.low > 0.0);
-        Ok(Found { figures, seeds: first.seeds, verdict: Verdict::of(&[same, worse]) })
+        figures.extend(excluded.iter().map(|lead| format!("minus `{EXCLUDING}`: {}", lead.words())));
+        let same = there.iter().all(|(_, lead)| lead.by.value.abs() <= SAME);
+        let worse = excluded.is_some_and(|lead| lead.by.low > 0.0);
+        Ok(Finding { figures, seeds: first.seeds, verdict: ClaimVerdict::of(&[same, worse]) })
     },
 };
 
-pub(super) const TD_LAMBDA: Rule = Rule {
+pub(super) const TD_LAMBDA: ClaimRule = ClaimRule {
     title: "TD(lambda)",
     says: "TD(lambda > 0) is more effective than TD(0).",
     rule: || {
@@ -146,7 +136,7 @@ pub(super) const TD_LAMBDA: Rule = Rule {
     },
     judge: |evidence| {
         let lead = evidence.main_minus("td0")?;
-        let figures = vec![format!("`{MAIN}` minus `td0`: {}", lead.points())];
-        Ok(Found { figures, seeds: lead.seeds, verdict: super::lead(&lead) })
+        let figures = vec![format!("`{MAIN}` minus `td0`: {}", lead.words())];
+        Ok(Finding { figures, seeds: lead.seeds, verdict: lead.verdict() })
     },
 };

@@ -1,11 +1,12 @@
 //! Claims on the single Q-function: section VII, non-hierarchical learning.
 
-use super::{Estimate, Found, MAIN, Rule, Verdict, difference};
-use crate::report::comparison::SINGLE;
-use crate::report::numbers::{limit, percent_with};
-use crate::report::statistics::TABLE_RESAMPLES;
+use super::evidence::{ClaimRule, Lead};
+use super::verdict::{ClaimVerdict, Finding};
+use crate::report::comparison::{MAIN, SINGLE};
+use crate::report::format::{limit, share};
+use crate::report::statistics::{TABLE_RESAMPLES, mean_of};
 use crate::report::summary::Score;
-use crate::report::training::{self, Tally, pooled};
+use crate::report::training::{TrialSums, of_series, pooled};
 
 /// The arm that is punished for collisions.
 const PENALTY: &str = "monolithic-penalty";
@@ -16,7 +17,7 @@ const OFTEN: f64 = 0.05;
 /// Success below this is poor.
 const POOR: f64 = 0.8;
 
-pub(super) const FAILS_FROM_AFAR: Rule = Rule {
+pub(super) const FAILS_FROM_AFAR: ClaimRule = ClaimRule {
     title: "single, far rooms",
     says: "After 300 trials a single Q-function generally fails from rooms B and C.",
     rule: || {
@@ -27,22 +28,19 @@ pub(super) const FAILS_FROM_AFAR: Rule = Rule {
         )
     },
     judge: |evidence| {
-        let cell = evidence.root(SINGLE)?.last();
-        let rooms = ["B", "C"].map(|room| evidence.success_from(cell, room).map(|values| Estimate::new(&values)));
+        let test = evidence.root(SINGLE)?.last();
+        let rooms = ["B", "C"].map(|room| evidence.success_from(test, room).map(|values| mean_of(&values)));
         let [b, c] = rooms;
         let (b, c) = (b?, c?);
-        Ok(Found {
-            figures: vec![
-                format!("{} from B", b.share()),
-                format!("{} from C, after {} trials", c.share(), cell.trials),
-            ],
-            seeds: cell.scores.len(),
-            verdict: Verdict::of(&[b.interval.high < FAILS, c.interval.high < FAILS]),
+        Ok(Finding {
+            figures: vec![format!("{} from B", share(b)), format!("{} from C, after {} trials", share(c), test.trials)],
+            seeds: test.scores.len(),
+            verdict: ClaimVerdict::of(&[b.high < FAILS, c.high < FAILS]),
         })
     },
 };
 
-pub(super) const COLLIDES: Rule = Rule {
+pub(super) const COLLIDES: ClaimRule = ClaimRule {
     title: "single, collisions",
     says: "It collides on more than 5% of its steps.",
     rule: || {
@@ -54,23 +52,19 @@ pub(super) const COLLIDES: Rule = Rule {
     },
     judge: |evidence| {
         let series = evidence.root(SINGLE)?;
-        let training = training::of(evidence.trainings, series);
+        let training = of_series(evidence.trainings, series);
         let training = training.ok_or_else(|| format!("There are no training trials of `{SINGLE}`."))?;
-        let tallies = training.tallies(0);
-        let (rate, interval) = pooled(&tallies, Tally::collisions_and_steps, TABLE_RESAMPLES);
-        Ok(Found {
-            figures: vec![format!("{} of steps collide", percent_with(rate, interval))],
-            seeds: tallies.len(),
-            verdict: match interval.low > OFTEN {
-                true => Verdict::Holds,
-                false if rate > OFTEN => Verdict::Partly,
-                false => Verdict::DoesNotHold,
-            },
+        let sums = training.sums_by_seed(0);
+        let rate = pooled(&sums, TrialSums::collisions_and_steps, TABLE_RESAMPLES);
+        Ok(Finding {
+            figures: vec![format!("{} of steps collide", share(rate))],
+            seeds: sums.len(),
+            verdict: ClaimVerdict::surely(rate.low > OFTEN, rate.value > OFTEN),
         })
     },
 };
 
-pub(super) const PUNISHED: Rule = Rule {
+pub(super) const PUNISHED: ClaimRule = ClaimRule {
     title: "single, punished",
     says: "Punishing collisions makes it slightly better, but it still performs poorly.",
     rule: || {
@@ -82,22 +76,18 @@ pub(super) const PUNISHED: Rule = Rule {
     },
     judge: |evidence| {
         let (punished, single) = (evidence.root(PENALTY)?.last(), evidence.root(SINGLE)?.last());
-        let success = Estimate::new(&punished.values(Score::success));
-        let gain = difference(&punished.scores, &single.scores)?;
-        let lead = difference(&evidence.root(MAIN)?.last().scores, &punished.scores)?;
-        let poor = success.mean < POOR && lead.mean > 0.0;
-        Ok(Found {
+        let success = mean_of(&punished.values(Score::success));
+        let gain = Lead::new(&punished.scores, &single.scores)?;
+        let lead = Lead::new(&evidence.root(MAIN)?.last().scores, &punished.scores)?;
+        let poor = success.value < POOR && lead.by.value > 0.0;
+        Ok(Finding {
             figures: vec![
-                format!("{} achieved", success.share()),
-                format!("minus `{SINGLE}`: {}", gain.points()),
-                format!("`{MAIN}` minus it: {}", lead.points()),
+                format!("{} achieved", share(success)),
+                format!("minus `{SINGLE}`: {}", gain.words()),
+                format!("`{MAIN}` minus it: {}", lead.words()),
             ],
-            seeds: success.seeds,
-            verdict: match poor {
-                true if gain.mean > 0.0 => Verdict::Holds,
-                true => Verdict::Partly,
-                false => Verdict::DoesNotHold,
-            },
+            seeds: punished.scores.len(),
+            verdict: ClaimVerdict::surely(poor && gain.by.value > 0.0, poor),
         })
     },
 };

@@ -1,10 +1,8 @@
 //! Choosing the best of several candidates that were tried on the same seeds, and how sure the choice is.
 
-use super::TABLE_RESAMPLES;
-use super::compare::paired_difference;
-use super::interval::Interval;
-use super::location::mean;
-use crate::report::resample::resample;
+use super::estimate::{Estimate, TABLE_RESAMPLES, paired_difference};
+use super::sample::mean;
+use crate::report::bootstrap_rng::resample;
 use rayon::prelude::*;
 
 /// Sums of the same values in another order may differ by this much.
@@ -17,9 +15,8 @@ pub struct Selection {
     pub best: usize,
     /// Mean of each candidate.
     pub means: Vec<f64>,
-    /// For each candidate the mean of best minus candidate over pairs of the same seed, with its percentile bootstrap
-    /// interval.
-    pub behind: Vec<(f64, Interval)>,
+    /// For each candidate the mean of best minus candidate over pairs of the same seed.
+    pub behind: Vec<Estimate>,
     /// Share of resamples in which each candidate has the highest mean; equals share theirs.
     pub chosen: Vec<f64>,
     /// Mean of the candidate that a resample chooses, over the seeds that are not in the resample, averaged over
@@ -31,7 +28,7 @@ pub struct Selection {
 impl Selection {
     /// Whether the seeds cannot tell a candidate from the best: the interval of the difference holds 0.
     pub fn indistinguishable(&self, candidate: usize) -> bool {
-        candidate == self.best || self.behind[candidate].1.low <= ROUNDING
+        candidate == self.best || self.behind[candidate].low <= ROUNDING
     }
 
     /// Candidates that the seeds cannot tell from the best, itself among them.
@@ -51,8 +48,7 @@ pub fn select(candidates: &[&[f64]]) -> Option<Selection> {
     let means: Vec<f64> = candidates.iter().map(|values| mean(values)).collect();
     let best = first_highest(&means);
     let (chosen, out_of_bag) = choices(candidates, seeds);
-    let behind = candidates.par_iter().map(|values| paired_difference(candidates[best], values, TABLE_RESAMPLES));
-    let behind = behind.collect();
+    let behind = candidates.par_iter().map(|values| paired_difference(candidates[best], values)).collect();
     Some(Selection { best, means, behind, chosen, out_of_bag })
 }
 

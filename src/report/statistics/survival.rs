@@ -1,11 +1,10 @@
 //! Time to an event where some learners never get there: Kaplan and Meier's estimate.
 
-use super::Z;
-use super::interval::Interval;
+use super::estimate::{Estimate, Z};
 
 /// How long one learner was watched.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Observation {
+pub struct TimeToEvent {
     /// When it got there, or how long it was watched in vain.
     pub time: f64,
     /// Whether it got there. If not, it is censored: it would have needed more than this time.
@@ -14,27 +13,26 @@ pub struct Observation {
 
 /// The curve at a time at which at least one learner got there.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Step {
+pub struct SurvivalStep {
     /// The time.
     pub time: f64,
     /// Learners that were still watched and had not got there before.
     pub at_risk: usize,
     /// Learners that got there now.
     pub events: usize,
-    /// Share of learners that have not got there by now, this time included.
-    pub survival: f64,
+    /// Share of learners that have not got there by now, this time included. Its log-log interval (Kalbfleisch and
+    /// Prentice) never leaves 0 to 1. Where everybody got there the formula has no value; the lower end is then 0 and
+    /// the upper end stays where it was.
+    pub share: Estimate,
     /// Standard error of the share, by Greenwood's formula.
     pub error: f64,
-    /// Log-log interval of the share (Kalbfleisch and Prentice): it never leaves 0 to 1. Where everybody got there the
-    /// formula has no value; the lower end is then 0 and the upper end stays where it was.
-    pub band: Interval,
 }
 
 /// Kaplan and Meier's estimate.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Survival {
+pub struct SurvivalCurve {
     /// By ascending time. Before the first step the share is 1.
-    pub steps: Vec<Step>,
+    pub steps: Vec<SurvivalStep>,
     /// Learners.
     pub count: usize,
     /// Learners that got there.
@@ -43,31 +41,29 @@ pub struct Survival {
     pub end: f64,
 }
 
-impl Survival {
+impl SurvivalCurve {
     /// The estimate. A learner that is censored when others get there counts as still watched then.
-    pub fn new(observations: &[Observation]) -> Self {
+    pub fn new(observations: &[TimeToEvent]) -> Self {
         let mut times: Vec<f64> = observations.iter().filter(|seen| seen.reached).map(|seen| seen.time).collect();
         times.sort_by(f64::total_cmp);
         times.dedup();
-        let (mut survival, mut greenwood) = (1.0, 0.0);
-        let mut band = Interval { low: 1.0, high: 1.0 };
+        let (mut share, mut greenwood) = (Estimate::exact(1.0), 0.0);
         let mut steps = Vec::with_capacity(times.len());
         for time in times {
             let at_risk = observations.iter().filter(|seen| seen.time >= time).count();
             let events = observations.iter().filter(|seen| seen.reached && seen.time == time).count();
             let left = at_risk - events;
-            survival *= left as f64 / at_risk as f64;
+            let value = share.value * left as f64 / at_risk as f64;
             greenwood += events as f64 / (at_risk as f64 * left as f64);
-            let (error, logarithm) = (survival * f64::sqrt(greenwood), f64::ln(survival));
-            band = if left == 0 {
-                Interval { low: 0.0, high: band.high }
-            } else {
-                let spread = Z * greenwood.sqrt() / logarithm;
-                // The logarithm is negative, so the plus sign gives the upper end.
-                Interval { low: survival.powf((-spread).exp()), high: survival.powf(spread.exp()) }
+            // The logarithm is negative, so the plus sign gives the upper end.
+            let spread = Z * greenwood.sqrt() / value.ln();
+            let (low, high) = match left {
+                0 => (0.0, share.high),
+                _ => (value.powf((-spread).exp()), value.powf(spread.exp())),
             };
-            let error = if left == 0 { 0.0 } else { error };
-            steps.push(Step { time, at_risk, events, survival, error, band });
+            share = Estimate { value, low, high };
+            let error = if left == 0 { 0.0 } else { value * greenwood.sqrt() };
+            steps.push(SurvivalStep { time, at_risk, events, share, error });
         }
         Self {
             steps,
@@ -79,16 +75,16 @@ impl Survival {
 
     /// The first time by which at least this share of the learners got there; none if fewer ever did.
     pub fn quantile(&self, share: f64) -> Option<f64> {
-        self.first(share, |step| step.survival)
+        self.first(share, |step| step.share.value)
     }
 
-    /// Interval of [`Survival::quantile`] (Brookmeyer and Crowley): the times at which the band's lower and upper
+    /// Interval of [`SurvivalCurve::quantile`] (Brookmeyer and Crowley): the times at which the band's lower and upper
     /// ends pass the share. None for an end beyond the last step.
     pub fn quantile_interval(&self, share: f64) -> (Option<f64>, Option<f64>) {
-        (self.first(share, |step| step.band.low), self.first(share, |step| step.band.high))
+        (self.first(share, |step| step.share.low), self.first(share, |step| step.share.high))
     }
 
-    fn first(&self, share: f64, of: fn(&Step) -> f64) -> Option<f64> {
+    fn first(&self, share: f64, of: fn(&SurvivalStep) -> f64) -> Option<f64> {
         // A share such as 0.9 and its rest are not exact in binary.
         self.steps.iter().find(|step| of(step) <= 1.0 - share + 1e-12).map(|step| step.time)
     }

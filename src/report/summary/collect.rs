@@ -1,25 +1,38 @@
 //! Sums the rows of the table of tests.
 
-use super::{Altered, Arm, Bound, Cell, Diverged, Score, Series, Skill, Summary, diverged as divergence};
-use crate::report::numbers::seeds as seed_count;
+use super::diverged;
+use super::scores::{
+    ArmSummary, DivergedLearner, PlannerBound, Score, ScoresByTest, SeedScores, Series, SeriesKey, SkillSummary,
+    Summary, TransferTest,
+};
+use crate::report::format::seeds as seed_count;
 use crate::run_folder::tables::{PLANNER, TRAINED};
 use crate::run_folder::{EvaluationRow, Names};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// One score per room, by seed.
-pub(super) type Seeds = BTreeMap<u32, Vec<Score>>;
-/// The same by training trials, or by variant.
-pub(super) type Cells = BTreeMap<u32, Seeds>;
-/// Skill, arm and sweep point.
-pub(super) type Key = (u32, u32, u32);
+impl From<&EvaluationRow> for Score {
+    fn from(row: &EvaluationRow) -> Self {
+        let sums = row.sums();
+        Self {
+            seed: row.seed,
+            actions: row.actions,
+            episodes: u64::from(sums.episodes),
+            successes: u64::from(sums.successes),
+            steps: u64::from(sums.steps),
+            collisions: u64::from(sums.collisions),
+            reward: sums.reward,
+            returned: sums.returned,
+        }
+    }
+}
 
 /// Sums the rows and sorts them by skill, arm, sweep point, trials and seed. A test that some seeds of its series lack
 /// is left out, with a warning: an average over the seeds that happen to be there would mislead. Learners that diverged
 /// lack no test: those that they did not live to see count as failed.
-pub fn summarise(names: &Names, rows: &[EvaluationRow], seeds: &[u32], diverged: &[Diverged]) -> Summary {
+pub fn summarise(names: &Names, rows: &[EvaluationRow], seeds: &[u32], learners: &[DivergedLearner]) -> Summary {
     let rooms = names.rooms.len();
-    let mut sums: BTreeMap<Key, Cells> = BTreeMap::new();
-    let mut altered: BTreeMap<Key, Cells> = BTreeMap::new();
+    let mut sums: BTreeMap<SeriesKey, ScoresByTest> = BTreeMap::new();
+    let mut transfer: BTreeMap<SeriesKey, ScoresByTest> = BTreeMap::new();
     let mut bounds: BTreeMap<(u32, u32), Vec<Score>> = BTreeMap::new();
     for row in rows.iter().filter(|row| row.episodes > 0) {
         let (arm, skill) = (Names::number(&names.arms, &row.arm), Names::number(&names.skills, &row.skill));
@@ -30,37 +43,37 @@ pub fn summarise(names: &Names, rows: &[EvaluationRow], seeds: &[u32], diverged:
             sums.entry(key).or_default().entry(row.trials).or_default().entry(row.seed).or_default()
         } else {
             let variant = Names::number(&names.variants, &row.variant);
-            altered.entry(key).or_default().entry(variant).or_default().entry(row.seed).or_default()
+            transfer.entry(key).or_default().entry(variant).or_default().entry(row.seed).or_default()
         };
         scores.resize(rooms, Score::default());
         scores[Names::number(&names.rooms, &row.room) as usize].add(&row.into());
     }
-    divergence::complete(names, diverged, &mut sums, &mut altered);
+    diverged::fill_in(names, learners, &mut sums, &mut transfer);
     let swept = sums.keys().any(|&(_, _, point)| point > 0);
     let mut summary = Summary {
         rooms: names.rooms.clone(),
         arms: arms(names, rows),
-        diverged: diverged.to_vec(),
+        diverged: learners.to_vec(),
         ..Summary::default()
     };
     for (code, name) in names.skills.iter().enumerate() {
         let code = code as u32;
-        let mut skill = Skill { name: name.clone(), series: Vec::new(), bounds: Vec::new() };
+        let mut skill = SkillSummary { name: name.clone(), series: Vec::new(), bounds: Vec::new() };
         for (&(_, arm), rooms) in bounds.range((code, 0)..=(code, u32::MAX)) {
             let arm = of_planner(names, arm).flatten().map(str::to_owned);
-            skill.bounds.push(Bound { arm, score: total(rooms), rooms: rooms.clone() });
+            skill.bounds.push(PlannerBound { arm, score: total(rooms), rooms: rooms.clone() });
         }
-        for (key, cells) in sums.range((code, 0, 0)..=(code, u32::MAX, u32::MAX)) {
+        for (key, tests) in sums.range((code, 0, 0)..=(code, u32::MAX, u32::MAX)) {
             let arm = &names.arms[key.1 as usize];
             let label = if swept { format!("{arm}, point {}", key.2) } else { arm.clone() };
-            let cells = complete(&format!("{name}, {label}"), cells, seeds, &mut summary.warnings);
-            let altered = altered.get(key).into_iter().flatten().map(|(variant, seeds)| Altered {
+            let tests = complete(&format!("{name}, {label}"), tests, seeds, &mut summary.warnings);
+            let elsewhere = transfer.get(key).into_iter().flatten().map(|(variant, seeds)| TransferTest {
                 variant: names.variants[*variant as usize].clone(),
                 scores: seeds.values().map(|rooms| total(rooms)).collect(),
             });
-            if !cells.is_empty() {
-                let altered = altered.collect();
-                skill.series.push(Series { arm: arm.clone(), point: key.2, label, cells, altered });
+            if !tests.is_empty() {
+                let transfer = elsewhere.collect();
+                skill.series.push(Series { arm: arm.clone(), point: key.2, label, tests, transfer });
             }
         }
         if !skill.series.is_empty() || !skill.bounds.is_empty() {
@@ -78,7 +91,7 @@ fn of_planner(names: &Names, arm: u32) -> Option<Option<&str>> {
 }
 
 /// An arm's rows come in the order of its tests, so the root's come last.
-fn arms(names: &Names, rows: &[EvaluationRow]) -> Vec<Arm> {
+fn arms(names: &Names, rows: &[EvaluationRow]) -> Vec<ArmSummary> {
     let mut skills: BTreeMap<u32, (u32, BTreeSet<u32>)> = BTreeMap::new();
     for row in rows {
         let (arm, skill) = (Names::number(&names.arms, &row.arm), Names::number(&names.skills, &row.skill));
@@ -88,7 +101,7 @@ fn arms(names: &Names, rows: &[EvaluationRow]) -> Vec<Arm> {
             all.insert(skill);
         }
     }
-    let arm = |(arm, (root, all)): (u32, (u32, BTreeSet<u32>))| Arm {
+    let arm = |(arm, (root, all)): (u32, (u32, BTreeSet<u32>))| ArmSummary {
         name: names.arms[arm as usize].clone(),
         root: names.skills[root as usize].clone(),
         hierarchical: all.len() > 1,
@@ -96,14 +109,14 @@ fn arms(names: &Names, rows: &[EvaluationRow]) -> Vec<Arm> {
     skills.into_iter().map(arm).collect()
 }
 
-fn complete(what: &str, cells: &Cells, seeds: &[u32], warnings: &mut Vec<String>) -> Vec<Cell> {
-    let all: BTreeSet<u32> = cells.values().flat_map(BTreeMap::keys).copied().collect();
+fn complete(what: &str, tests: &ScoresByTest, seeds: &[u32], warnings: &mut Vec<String>) -> Vec<SeedScores> {
+    let all: BTreeSet<u32> = tests.values().flat_map(BTreeMap::keys).copied().collect();
     let absent = seeds.iter().filter(|seed| !all.contains(seed)).count();
     if absent > 0 {
         warnings.push(format!("{what}: {absent} of {} have no tests at all.", seed_count(seeds.len())));
     }
     let mut kept = Vec::new();
-    for (&trials, seeds) in cells {
+    for (&trials, seeds) in tests {
         if seeds.len() == all.len() {
             let rooms = seeds.values().next().map_or(0, Vec::len);
             let room = |room: usize| {
@@ -111,7 +124,7 @@ fn complete(what: &str, cells: &Cells, seeds: &[u32], warnings: &mut Vec<String>
                 scores.filter(|score| score.episodes > 0).collect()
             };
             let scores = seeds.values().map(|rooms| total(rooms)).collect();
-            kept.push(Cell { trials, scores, rooms: (0..rooms).map(room).collect() });
+            kept.push(SeedScores { trials, scores, rooms: (0..rooms).map(room).collect() });
         } else {
             let (has, of) = (seeds.len(), all.len());
             warnings.push(format!("{what}: left out after {trials} trials, where {has} of {of} seeds were tested."));

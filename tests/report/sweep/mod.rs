@@ -4,8 +4,8 @@ mod numbers;
 mod pages;
 
 use crate::OFFICE;
-use skilltree::report::summary::{Diverged, Summary, summarise};
-use skilltree::report::sweep::Swept;
+use skilltree::report::summary::{DivergedLearner, Summary, summarise};
+use skilltree::report::sweep::SweepResults;
 use skilltree::run_folder::sweep::{Axis, AxisValue, Design, FILE, Scale, write_sweep};
 use skilltree::run_folder::tables::write_table;
 use skilltree::run_folder::{EvaluationRow, Names, Provenance, RunFolder, Sweep};
@@ -87,7 +87,7 @@ pub(crate) fn grid(axes: Vec<Axis>) -> Sweep {
 pub(crate) fn thresholds() -> Sweep {
     grid(vec![
         axis("skill.recharge.applicable.dock", "dock threshold", Scale::Log, &[0.01, 0.02, 0.05, 0.1, 0.2, 0.5]),
-        axis("learning.rate", "rate", Scale::Linear, &[0.1, 0.2, 0.3, 0.4, 0.5]),
+        axis("learning.learning_rate", "rate", Scale::Linear, &[0.1, 0.2, 0.3, 0.4, 0.5]),
     ])
 }
 
@@ -100,14 +100,14 @@ pub(crate) fn known() -> (Names, Vec<EvaluationRow>) {
     (names(&["hierarchical", "monolithic"]), rows(2, COLUMNS * ROWS, SEEDS, last))
 }
 
-pub(crate) fn summary(names: &Names, rows: &[EvaluationRow], seeds: u32, diverged: &[Diverged]) -> Summary {
+pub(crate) fn summary(names: &Names, rows: &[EvaluationRow], seeds: u32, diverged: &[DivergedLearner]) -> Summary {
     summarise(names, rows, &(0..seeds).collect::<Vec<_>>(), diverged)
 }
 
-pub(crate) fn swept() -> Swept {
+pub(crate) fn swept() -> SweepResults {
     let (names, rows) = known();
     let seeds: Vec<u32> = (0..SEEDS).collect();
-    Swept::new(thresholds(), &summary(&names, &rows, SEEDS, &[]), &seeds)
+    SweepResults::new(thresholds(), &summary(&names, &rows, SEEDS, &[]), &seeds)
 }
 
 pub(crate) fn folder(dir: &Path, sweep: &Sweep, rows: &[EvaluationRow], seeds: u32) {

@@ -2,9 +2,9 @@
 
 use super::{ROWS, SEEDS, TESTS, known, peak, summary, swept, thresholds};
 use crate::close;
-use skilltree::report::statistics::Survival;
-use skilltree::report::summary::Diverged;
-use skilltree::report::sweep::{Surface, Swept, effect, levels, replays};
+use skilltree::report::statistics::SurvivalCurve;
+use skilltree::report::summary::{DivergedLearner, cautions};
+use skilltree::report::sweep::{ResponseSurface, SweepResults, levels, main_effect, reruns};
 use skilltree::run_folder::EvaluationRow;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -13,7 +13,7 @@ use std::path::Path;
 #[test]
 fn the_optimum_and_its_uncertainty_are_found() {
     let swept = swept();
-    let surface: &Surface = &swept.surfaces[0];
+    let surface: &ResponseSurface = &swept.surfaces[0];
     let selection = &surface.selection;
     assert_eq!((surface.points.len(), surface.axes.as_slice(), surface.best().number), (30, &[0, 1][..], 12));
     close(selection.means[12], 0.9052083333333334, 1e-12);
@@ -41,18 +41,18 @@ fn effects_are_marginal_means() {
         [0.6670833333333334, 0.78625, 0.8554166666666667, 0.794375, 0.656875, 0.4275].map(|mean: f64| (mean, 5));
     assert_eq!(columns.len(), 6);
     for (level, (mean, points)) in columns.iter().zip(means) {
-        close(level.mean().0, mean, 1e-12);
+        close(level.mean().value, mean, 1e-12);
         assert_eq!((level.points.len(), level.learners.len()), (points, points * SEEDS as usize));
     }
     assert_eq!(columns[2].label, "0.05");
-    let (highest, lowest, difference, interval) = effect(&columns).unwrap();
-    assert_eq!((highest, lowest), (2, 5));
-    close(difference, 0.42791666666666667, 1e-12);
-    close(interval.low, 0.40875, 0.0015);
-    close(interval.high, 0.44854167, 0.0015);
-    close(rows[3].mean().0, 0.7697916666666667, 1e-12);
-    assert_eq!(effect(&rows).unwrap().1, 0);
-    assert!(effect(&[]).is_none());
+    let effect = main_effect(&columns).unwrap();
+    assert_eq!((effect.highest, effect.lowest), (2, 5));
+    close(effect.difference.value, 0.42791666666666667, 1e-12);
+    close(effect.difference.low, 0.40875, 0.0015);
+    close(effect.difference.high, 0.44854167, 0.0015);
+    close(rows[3].mean().value, 0.7697916666666667, 1e-12);
+    assert_eq!(main_effect(&rows).unwrap().lowest, 0);
+    assert!(main_effect(&[]).is_none());
 }
 
 /// lifelines 0.30.3: KaplanMeierFitter on the same trials to criterion.
@@ -60,7 +60,7 @@ fn effects_are_marginal_means() {
 fn trials_to_criterion_are_censored_at_the_last_test() {
     let swept = swept();
     let surface = &swept.surfaces[0];
-    let best = Survival::new(&surface.best().seen);
+    let best = SurvivalCurve::new(&surface.best().seen);
     assert_eq!((best.count, best.reached, best.end), (24, 16, 300.0));
     let lifelines = [
         (200.0, 0.541667, 0.327120, 0.714341),
@@ -70,38 +70,38 @@ fn trials_to_criterion_are_censored_at_the_last_test() {
     assert_eq!(best.steps.len(), lifelines.len());
     for (step, (time, share, low, high)) in best.steps.iter().zip(lifelines) {
         assert_eq!(step.time, time);
-        close(step.survival, share, 1e-6);
-        close(step.band.low, low, 1e-6);
-        close(step.band.high, high, 1e-6);
+        close(step.share.value, share, 1e-6);
+        close(step.share.low, low, 1e-6);
+        close(step.share.high, high, 1e-6);
     }
     assert_eq!((best.quantile(0.5), best.quantile_interval(0.5)), (Some(250.0), (Some(200.0), None)));
-    let column = Survival::new(&levels(&swept.sweep, surface, 0)[2].seen);
+    let column = SurvivalCurve::new(&levels(&swept.sweep, surface, 0)[2].seen);
     assert_eq!((column.count, column.reached), (120, 59));
-    close(column.steps.last().unwrap().survival, 0.508333, 1e-6);
+    close(column.steps.last().unwrap().share.value, 0.508333, 1e-6);
 }
 
 #[test]
 fn the_worst_learners_come_with_their_commands() {
     let swept = swept();
-    let listed = replays(&swept, Path::new("runs/my sweep"));
+    let listed = reruns(&swept, Path::new("runs/my sweep"));
     let at_best: Vec<_> =
-        listed.iter().filter(|replay| replay.arm == "hierarchical" && replay.point == 12).take(5).collect();
-    let seeds: Vec<u32> = at_best.iter().map(|replay| replay.seed).collect();
+        listed.iter().filter(|rerun| rerun.arm == "hierarchical" && rerun.point == 12).take(5).collect();
+    let seeds: Vec<u32> = at_best.iter().map(|rerun| rerun.seed).collect();
     assert_eq!(seeds, [23, 12, 14, 6, 11]);
-    close(at_best[0].value.unwrap(), 0.6, 1e-12);
+    close(at_best[0].values.unwrap().0, 0.6, 1e-12);
     assert_eq!(
         at_best[0].command,
         "skilltree run 'runs/my sweep/config.toml' --arm hierarchical --point 12 --seeds 23 --out \
          'runs/my sweep-hierarchical-p12-23'"
     );
-    let each: BTreeSet<_> = listed.iter().map(|replay| (&replay.arm, replay.point, replay.seed)).collect();
+    let each: BTreeSet<_> = listed.iter().map(|rerun| (&rerun.arm, rerun.point, rerun.seed)).collect();
     assert_eq!((each.len(), listed.len()), (20, 20));
-    let here = replays(&swept, Path::new("runs/quick/"));
+    let here = reruns(&swept, Path::new("runs/quick/"));
     assert!(here[0].command.ends_with("--out runs/quick-hierarchical-p12-23"), "{}", here[0].command);
 }
 
-fn diverged(point: u32, seed: u32) -> Diverged {
-    Diverged { arm: "hierarchical".into(), point, seed, skill: "recharge".into(), trial: 60 }
+fn diverged(point: u32, seed: u32) -> DivergedLearner {
+    DivergedLearner { arm: "hierarchical".into(), point, seed, skill: "recharge".into(), trial: 60 }
 }
 
 /// One learner stops after its second test, at another point all do.
@@ -119,29 +119,29 @@ fn learners_that_diverged_count_as_failed() {
     failures.extend((0..SEEDS).map(|seed| diverged(3, seed)));
     let summary = summary(&names, &rows, SEEDS, &failures);
     assert!(summary.warnings.is_empty(), "{:?}", summary.warnings);
-    let cautions = summary.cautions();
+    let cautions = cautions(&summary);
     assert!(
         cautions.iter().any(|text| text.contains("25 learners diverged") && text.contains("20 more")),
         "{cautions:?}"
     );
     let series = &summary.skills[0].series[12];
-    assert_eq!((series.point, series.cells.len()), (12, TESTS.len()));
+    assert_eq!((series.point, series.tests.len()), (12, TESTS.len()));
     let score = series.last().scores[5];
     // As long as the longest mean trial of any test: 200 steps, where none was achieved.
     assert_eq!((score.seed, score.episodes, score.successes, score.steps), (5, 40, 0, 8_000));
     assert_eq!(score.actions, 100 + 60 * 25);
-    assert_eq!(series.cells[1].scores[5].successes, u64::from(peak(2, 2, 5) * 25 * 350 / (300 * 75)));
-    let moved = &series.altered[0].scores;
+    assert_eq!(series.tests[1].scores[5].successes, u64::from(peak(2, 2, 5) * 25 * 350 / (300 * 75)));
+    let moved = &series.transfer[0].scores;
     assert_eq!((moved.len(), moved[5].episodes, moved[5].successes), (SEEDS as usize, 40, 0));
     assert_eq!(moved[6].successes, u64::from(peak(2, 2, 6)));
     let seeds: Vec<u32> = (0..SEEDS).collect();
-    let swept = Swept::new(thresholds(), &summary, &seeds);
+    let swept = SweepResults::new(thresholds(), &summary, &seeds);
     let surface = &swept.surfaces[0];
     assert_eq!((surface.points.len(), surface.selection.means[3]), (30, 0.0));
     close(surface.selection.means[12], 0.9052083333333334 - f64::from(peak(2, 2, 5)) / 40.0 / 24.0, 1e-12);
     let seen = surface.points[12].seen[5];
     assert_eq!((seen.time, seen.reached), (300.0, false));
-    let listed = replays(&swept, Path::new("run"));
+    let listed = reruns(&swept, Path::new("run"));
     assert_eq!(
         listed[0].command,
         "skilltree run run/config.toml --arm hierarchical --point 12 --seeds 5 --out run-hierarchical-p12-5"

@@ -1,10 +1,11 @@
 //! Motion and contact, eight segments side by side: those of the cell's list, which holds all that the robot can touch.
 
-use crate::env::contact::{BUMPER_GAP, FAR, INVERSE_RADIUS, RADIUS, STILL, Travel, disc_to_point};
+use crate::env::contact::{FAR, STILL, Travel, disc_to_point};
 use crate::env::motion::{BACKWARD, COLLISION, DOCKED, FORWARD, heading_after};
 use crate::env::segments::{BLOCK, SegmentBlock, SegmentGrid};
 use crate::env::workgroup::Workgroup;
 use crate::layout::Moved;
+use crate::layout::lengths::{BUMPER_GAP, INVERSE_RADIUS, RADIUS};
 use crate::math::functions::{reciprocal, sin_cos};
 use crate::math::reduce::{lanes_min, lanes_or};
 
@@ -116,7 +117,16 @@ pub fn body_after(floor: &SegmentGrid, x: f32, y: f32, heading: f32, action: u32
 /// What is left of an action once the robot has its new `heading`, which comes with its sine and cosine.
 #[inline(always)]
 #[expect(clippy::too_many_arguments, reason = "a pose with its sine and cosine, and an action")]
-pub fn travel(floor: &SegmentGrid, x: f32, y: f32, heading: f32, sine: f32, cosine: f32, action: u32, slip: f32) -> Moved {
+pub fn travel(
+    floor: &SegmentGrid,
+    x: f32,
+    y: f32,
+    heading: f32,
+    sine: f32,
+    cosine: f32,
+    action: u32,
+    slip: f32,
+) -> Moved {
     let mut moved = Moved { x, y, heading, bumpers: 0, events: 0 };
     let wanted = 12.0 * slip;
     let reach = if wanted > 0.0 { wanted } else { 0.0 };

@@ -1,15 +1,14 @@
 //! The optimisers, a row of weights at a time.
 
+use super::reduce::lanes_sum;
 use crate::env::workgroup::Workgroup;
-use crate::layout::{
-    HyperParams, LANES, MAX_CHILDREN, MAX_INPUTS, MAX_ROWS, OPTIMISER_ADAM_ROWS, OPTIMISER_SGD, SkillShape,
-};
+use crate::layout::choices::{OPTIMISER_ADAM_ROWS, OPTIMISER_SGD};
+use crate::layout::{HyperParams, LANES, MAX_CHILDREN, MAX_INPUTS, MAX_ROWS, SkillShape};
 use crate::math::functions::{flush, reciprocal, reciprocal_sqrt, square_root};
 use crate::math::reduce::Lanes;
 use crate::qnet::forward::{HALF_LANES, lanes_used};
 use crate::qnet::gradient::NetErrors;
 use crate::qnet::optimiser::adam::BETA2_POWER;
-use super::reduce::lanes_sum;
 
 /// Rows whose step sizes are found together: a divisor of `MAX_ROWS`.
 const ROW_BLOCK: usize = 16;

@@ -87,7 +87,7 @@ pub fn step(robots: &mut [Robot], shared: &CohortData) {
         let (ux, uy) = rays(after.cosine[i], after.sine[i]);
         let words = bearing_words(&random[i][0], &random[i][1], &random[i][2], &random[i][3]);
         let readings = sonar_scan(floor, &words, robot.x, robot.y, &ux, &uy, robot.noise);
-                robot.sensed.sonar = pack_bytes(&readings);
+        robot.sensed.sonar = pack_bytes(&readings);
     }
     for i in 0..robots.len() {
         let robot = &mut robots[i];

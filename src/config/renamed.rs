@@ -1,0 +1,78 @@
+//! Keys and words of earlier versions, and what they are called now.
+
+use crate::toml::document::{KeyValue, Node, Value};
+use crate::toml::error::ConfigError;
+
+/// Old paths and new ones; `*` stands for a name that the file gives.
+const KEYS: &[(&str, &str)] = &[
+    ("alter", "transfer"),
+    ("arm.*.like", "extends"),
+    ("teacher.bank", "lessons"),
+    ("teacher.episodes", "eval_episodes"),
+    ("robot.memory.light", "light_decay"),
+    ("robot.memory.doors", "door_decay"),
+    ("robot.memory.ranges", "range_decay"),
+    ("learning.init", "init_range"),
+    ("learning.rate", "learning_rate"),
+    ("learning.rate_end_share", "learning_rate_end_share"),
+    ("learning.rate_trials", "learning_rate_trials"),
+    ("learning.target_limit", "target_clip"),
+    ("learning.memory", "replay_capacity"),
+    ("learning.mean_age", "replay_mean_age"),
+    ("learning.taught_passes", "pretrain_epochs"),
+    ("learning.taught_always", "taught_as_policy"),
+    ("learning.inner_share", "intra_skill_share"),
+    ("skill.*.choice", "policy"),
+    ("skill.*.decision_steps", "child_timeout"),
+    ("skill.*.planned", "oracle"),
+    ("skill.*.tests", "eval_starts"),
+    ("skill.*.tested_at", "eval_at"),
+    ("skill.*.ends", "goal"),
+];
+/// Key, old word and new one.
+const WORDS: &[(&str, &str, &str)] = &[("skill.*.policy", "ordered", "fixed-priority")];
+
+/// Refuses the first old key or word, with the new one as the hint.
+pub(super) fn refuse(tree: &Node) -> Result<(), ConfigError> {
+    walk(tree, &mut Vec::new())
+}
+
+fn walk<'a>(node: &'a Node, path: &mut Vec<&'a str>) -> Result<(), ConfigError> {
+    let Value::Table(entries) = &node.value else { return Ok(()) };
+    for entry in entries {
+        path.push(&entry.key);
+        check(entry, path)?;
+        walk(&entry.node, path)?;
+        path.pop();
+    }
+    Ok(())
+}
+
+fn check(entry: &KeyValue, path: &[&str]) -> Result<(), ConfigError> {
+    let is = |pattern: &str| {
+        let parts = pattern.split('.');
+        parts.clone().count() == path.len() && parts.zip(path).all(|(part, name)| part == "*" || part == *name)
+    };
+    // What an arm, a point of a sweep and a skill may change is named as it is elsewhere.
+    let at = |pattern: &str| {
+        let inner = pattern.strip_prefix("learning.").map(|name| format!("skill.*.learning.{name}"));
+        let all = [Some(pattern.to_owned()), inner];
+        all.into_iter().flatten().any(|path| is(&path) || is(&format!("arm.*.{path}")) || is(&format!("sweep.{path}")))
+    };
+    if let Some((_, new)) = KEYS.iter().find(|(old, _)| at(old)) {
+        let message = format!("`{}` has another name now", path.join("."));
+        return Err(entry.origin.error(message, format!("write `{new}`")));
+    }
+    let written = |node: &Node, old: &str| matches!(&node.value, Value::Text(text) if text == old);
+    for (_, old, new) in WORDS.iter().filter(|(key, ..)| at(key)) {
+        let listed = match &entry.node.value {
+            Value::List(items) => items.iter().find(|item| written(item, old)),
+            _ => None,
+        };
+        if let Some(node) = listed.or_else(|| Some(&entry.node).filter(|node| written(node, old))) {
+            let message = format!("`{old}` of `{}` has another name now", path.join("."));
+            return Err(node.origin.error(message, format!("write \"{new}\"")));
+        }
+    }
+    Ok(())
+}

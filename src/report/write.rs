@@ -1,0 +1,85 @@
+//! Makes the report of a run, and writes it into the run's folder.
+
+use super::all_figures;
+use super::error::ReportError;
+use super::figure::svg;
+use super::page::{self, DrawnFigure};
+use super::results::RunResults;
+use crate::run_folder::file_system::{Disk, FileSystem};
+use crate::run_folder::{FinishedRun, atomic, folder};
+use rayon::prelude::*;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// File name of the page.
+pub const PAGE: &str = "report.html";
+const FIGURES: &str = "figures";
+
+/// A report before it is written.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RenderedReport {
+    /// In the order of the page.
+    pub figures: Vec<DrawnFigure>,
+    /// The HTML page, with all figures in it.
+    pub page: String,
+    /// A summary for a terminal.
+    pub summary: String,
+}
+
+/// A report that has been written.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WrittenReport {
+    /// Paths of the figures, then of the page.
+    pub files: Vec<PathBuf>,
+    /// A summary for a terminal.
+    pub summary: String,
+}
+
+/// Makes the report of a complete run, in memory.
+///
+/// # Errors
+/// If a file of the run is damaged.
+pub fn render(run: &FinishedRun) -> Result<RenderedReport, ReportError> {
+    let results = RunResults::read(run)?;
+    let figures = all_figures::draw(run, &results)?.into_par_iter().map(|figure| {
+        let svg = svg(&figure);
+        DrawnFigure { name: figure.name, section: figure.section, svg }
+    });
+    let figures: Vec<DrawnFigure> = figures.collect();
+    let (page, summary) = page::render(run, &results, &figures)?;
+    Ok(RenderedReport { figures, page, summary })
+}
+
+/// Writes `figures/*.svg` and `report.html` into a complete run folder.
+///
+/// # Errors
+/// If the folder is not a complete run, in use, damaged or not writable. Each file is written whole or not at all.
+pub fn write(dir: &Path) -> Result<WrittenReport, ReportError> {
+    write_on(Arc::new(FileSystem), dir)
+}
+
+/// As [`write()`], on a disk of the caller's.
+///
+/// # Errors
+/// As [`write()`].
+pub fn write_on(disk: Arc<dyn Disk>, dir: &Path) -> Result<WrittenReport, ReportError> {
+    let run = FinishedRun::read_on(Arc::clone(&disk), dir)?;
+    let _lock = folder::lock(&*disk, dir)?;
+    let RenderedReport { figures, page, summary } = render(&run)?;
+    let folder = dir.join(FIGURES);
+    atomic::make_folder(&*disk, &folder)?;
+    for folder in [dir, &folder] {
+        atomic::remove_leftovers(&*disk, folder)?;
+    }
+    let mut files = Vec::new();
+    for figure in figures {
+        let path = folder.join(format!("{}.svg", figure.name));
+        atomic::place(&*disk, &path, figure.svg.as_bytes())?;
+        files.push(path);
+    }
+    atomic::sync_folder(&*disk, &folder)?;
+    let path = dir.join(PAGE);
+    atomic::write(&*disk, &path, page.as_bytes())?;
+    files.push(path);
+    Ok(WrittenReport { files, summary })
+}
