@@ -2,7 +2,7 @@
 
 use crate::backend::Backend;
 use crate::config::plan::Plan;
-use crate::config::{ConfigError, Overrides, load};
+use crate::config::{ConfigError, Files, OsFiles, Overrides, load_from};
 use crate::run_folder::{FinishedRun, Provenance, RecordError, RunFolder, State};
 use crate::train::batch_group::{BatchGroup, SetupError, groups};
 use crate::train::callbacks::{Callbacks, Signal};
@@ -47,7 +47,15 @@ impl Experiment {
     /// # Errors
     /// [`ConfigError`] says where the file is wrong, and what would be right.
     pub fn load(config: impl AsRef<Path>, overrides: &Overrides) -> Result<Self, ConfigError> {
-        Ok(Self { plan: load(config.as_ref(), overrides)? })
+        Self::load_from(&OsFiles, config, overrides)
+    }
+
+    /// The same from any source of files, such as [`MemoryFiles`](crate::MemoryFiles).
+    ///
+    /// # Errors
+    /// As [`Experiment::load`].
+    pub fn load_from(files: &dyn Files, config: impl AsRef<Path>, overrides: &Overrides) -> Result<Self, ConfigError> {
+        Ok(Self { plan: load_from(files, config.as_ref(), overrides)? })
     }
 
     /// All that the config says, with every default and derived size.

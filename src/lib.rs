@@ -97,7 +97,7 @@
 //!
 //! # From Rust
 //!
-//! What is re-exported here is the public interface: an [`Experiment`] is loaded, a [`Backend`] is opened, the experiment
+//! What is re-exported here is the public interface: an [`Experiment`] is loaded from files or memory, a [`Backend`] is opened, the experiment
 //! runs into a folder, and its [`FinishedRun`] and report are read. `examples/train.rs` does so in some twenty lines. The
 //! modules are public for the program, tests and examples alone; their names may change with any version.
 
@@ -140,6 +140,6 @@ pub mod world;
 
 pub use backend::open::{BackendChoice, BackendOptions, open_backend};
 pub use backend::{Backend, BackendError};
-pub use config::{ConfigError, Overrides};
+pub use config::{ConfigError, Files, MemoryFiles, Overrides};
 pub use experiment::{Experiment, ExperimentError, Progress};
 pub use run_folder::{FinishedRun, RecordError};
