@@ -2,7 +2,7 @@
 
 mod support;
 
-use skilltree::backend::cpu::CpuBackend;
+use skilltree::backend::cpu::cpu_backend;
 use skilltree::backend::{Backend, BackendError};
 use skilltree::run_folder::sweep::{self, AxisValue, read_sweep};
 use skilltree::run_folder::tables::{EVALUATIONS, TRIALS, read_evaluations, read_trials};
@@ -250,7 +250,7 @@ fn points_and_arms_that_are_not_there_are_refused() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_learner_that_fits_no_memory_is_refused() {
-    let backend = CpuBackend::new(1, None).expect("a thread");
+    let backend = cpu_backend(1, None).expect("a thread");
     assert_eq!(backend.cohort_size(1 << 10).ok(), Some(32));
     let refused = backend.cohort_size(1 << 60);
     assert!(

@@ -3,7 +3,8 @@
 mod export;
 
 use serde_json::Value;
-use skilltree::backend::cpu::CpuBackend;
+use skilltree::backend::cpu::cpu_backend;
+use skilltree::backend::host::HostBackend;
 use skilltree::backend::{Backend, BackendError, Cohort, Stop, Test};
 use skilltree::bench::BenchError;
 use skilltree::bench::benchmarks::{BenchSizes, Benchmark, Decisions, HierarchyLearners, RobotSteps};
@@ -28,13 +29,13 @@ enum Fault {
 
 /// The CPU backend with one bit wrong in one of its results.
 struct Broken {
-    inner: CpuBackend,
+    inner: HostBackend,
     fault: Fault,
     cohort: Option<Cohort>,
 }
 
 fn broken(fault: Fault) -> Executor {
-    let inner = CpuBackend::new(1, None).expect("a thread");
+    let inner = cpu_backend(1, None).expect("a thread");
     Executor::new("broken", ExecutorKind::Cpu, 1, Box::new(Broken { inner, fault, cohort: None }))
 }
 
@@ -88,7 +89,7 @@ impl Backend for Broken {
 }
 
 fn beside_broken(benchmark: &dyn Benchmark, fault: Fault) -> Result<TaskReport, BenchError> {
-    let sound = CpuBackend::new(1, None).expect("a thread");
+    let sound = cpu_backend(1, None).expect("a thread");
     let sound = Executor::new("sound", ExecutorKind::Cpu, 1, Box::new(sound));
     measure(benchmark, &mut [sound, broken(fault)], 1, &mut Vec::new())
 }
