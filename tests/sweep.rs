@@ -2,7 +2,7 @@
 
 mod support;
 
-use skilltree::backend::cpu::CpuBackend;
+use skilltree::backend::cpu::cpu_backend;
 use skilltree::backend::{Backend, BackendError};
 use skilltree::config::plan::Plan;
 use skilltree::config::{Overrides, load};
@@ -168,7 +168,7 @@ fn swept(config: &str, axis: &str, more: &[&str]) -> Plan {
 /// Numbers of single learners keep nobody apart; whatever the teacher, the world or the nets' shapes know does.
 #[test]
 fn arms_share_a_batch_and_skills_where_their_learners_see_the_same() {
-    let cuts = ["world=../tests/support/small.toml", "arms=['taught-adam']", "teacher.bank=16", "teacher.episodes=1"];
+    let cuts = ["world=../tests/support/small.toml", "arms=['taught-adam']", "teacher.lessons=16", "teacher.eval_episodes=1"];
     for (axis, expected) in [
         ("sweep.skill.dock.trials=[4, 7]", 1),
         ("sweep.skill.dock.max_steps=[9, 12]", 2),
@@ -181,7 +181,7 @@ fn arms_share_a_batch_and_skills_where_their_learners_see_the_same() {
         assert_eq!(shared_skills(&plan).len(), expected, "{axis}");
     }
     for (axis, shared) in
-        [("sweep.skill.top.applicable.dock=[-0.1, 0.2]", 1), ("sweep.skill.pass.learning.rate=[0.1, 0.2]", 2)]
+        [("sweep.skill.top.applicable.dock=[-0.1, 0.2]", 1), ("sweep.skill.pass.learning.learning_rate=[0.1, 0.2]", 2)]
     {
         let plan = swept("tests/support/tree.toml", axis, &["arms=['persistent']"]);
         let found = shared_skills(&plan);
@@ -286,7 +286,7 @@ fn points_and_arms_that_are_not_there_are_refused() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_learner_that_fits_no_memory_is_refused() {
-    let backend = CpuBackend::new(1, None).expect("a thread");
+    let backend = cpu_backend(1, None).expect("a thread");
     assert_eq!(backend.cohort_size(1 << 10).ok(), Some(32));
     let refused = backend.cohort_size(1 << 60);
     assert!(

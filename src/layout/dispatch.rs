@@ -17,7 +17,7 @@ shared! {
         nets_stride: u32,
         /// Words of one learner's lessons.
         lessons_stride: u32,
-        /// Words of one learner's trial rows.
+        /// Rows of one learner's trial table.
         rows_stride: u32,
         /// Learners, or robots, in the buffers.
         learners: u32,

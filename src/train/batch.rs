@@ -185,8 +185,8 @@ fn without_lessons(cohort: &Cohort) -> Cohort {
         nets: cohort.nets.clone(),
         lessons_stride: 1,
         lessons: vec![0; learners],
-        rows_stride: 1,
-        rows: vec![0; learners],
+        rows_stride: TRIAL_WORDS,
+        rows: vec![0; learners * TRIAL_WORDS],
     }
 }
 

@@ -21,7 +21,7 @@ fn places_that_cannot_be_written_are_refused() {
         ("/dev/null", "/dev/null"),
     ];
     for (out, says) in cases {
-        let tiny = ["--backend", "cpu", "--set", "teacher.bank=10", "--set", "teacher.episodes=1"];
+        let tiny = ["--backend", "cpu", "--set", "teacher.lessons=10", "--set", "teacher.eval_episodes=1"];
         sandbox.refuses(&[&["run", "docking.toml", "--out", out], &tiny[..]].concat(), 1, &[says, "--out"][..1]);
     }
 }

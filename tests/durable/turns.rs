@@ -1,7 +1,7 @@
 //! How far a large cohort moves at a time.
 
 use super::failures::{only_group, plan};
-use skilltree::backend::cpu::CpuBackend;
+use skilltree::backend::cpu::cpu_backend;
 use skilltree::backend::{Backend, Stop};
 
 /// However slow the machine: the bound is a number of learners and not a time, for a turn that was over before it began
@@ -10,7 +10,7 @@ use skilltree::backend::{Backend, Stop};
 fn a_large_cohort_moves_some_learners_at_a_time() {
     let plan = plan("0..100");
     let group = only_group(&plan);
-    let mut backend = CpuBackend::new(2, Some(1)).expect("threads");
+    let mut backend = cpu_backend(2, Some(1)).expect("threads");
     backend.load(group.cohort(&plan, &group.learners(&plan))).expect("memory");
     let stop = Stop { skill: 0, trial: 1 };
     let mut before = backend.memory().expect("memory").states.clone();

@@ -4,7 +4,7 @@ use super::campaign::campaign;
 use super::within::folder;
 use super::{experiment, file, files, mutate, somewhere};
 use crate::memory::Memory;
-use skilltree::backend::cpu::CpuBackend;
+use skilltree::backend::cpu::cpu_backend;
 use skilltree::run_folder::failures::read_failures;
 use skilltree::run_folder::file_system::Disk;
 use skilltree::run_folder::manifest::Manifest;
@@ -25,7 +25,7 @@ use std::sync::Arc;
 fn results() -> Vec<LearnerResult> {
     let experiment = experiment();
     let group = &experiment.groups[0];
-    let mut backend = CpuBackend::new(1, None).unwrap();
+    let mut backend = cpu_backend(1, None).unwrap();
     let ids = group.learners(&experiment.plan);
     train(&experiment.plan, group, &ids, &|_| None, None, &mut backend, &mut ()).unwrap()
 }

@@ -99,7 +99,7 @@ fn command_lines() {
     let config = desk.path().join("configs/docking.toml");
     let small = "world=worlds/small.toml";
     let seeds = [
-        "0..7\nlearning.rate=0.01\nskill.dock.trials=6\narms=['taught-adam']",
+        "0..7\nlearning.learning_rate=0.01\nskill.dock.trials=6\narms=['taught-adam']",
         "1,2,5..9\narm.taught-sgd.learning.learning_rate=0.1\nevaluate.at=[0, 3]",
         "0..=4294967295\nskill.dock.starts={ light-area = 0.8, anywhere = 0.2 }\nlearning.optimiser=sgd",
         "4294967295\nskill.dock.inputs=['sonar(60)', 'light']\nskill.dock.reward={ docked = 100 }",

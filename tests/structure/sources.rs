@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 
 /// The project's folder.
-pub fn root() -> PathBuf {
+pub(crate) fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }
 
 /// Files with this ending below a folder, as paths relative to it, sorted.
-pub fn files(folder: &str, ending: &str) -> Vec<String> {
+pub(crate) fn files(folder: &str, ending: &str) -> Vec<String> {
     let folder = root().join(folder);
     let mut found = Vec::new();
     let mut folders = vec![folder.clone()];
@@ -27,17 +27,17 @@ pub fn files(folder: &str, ending: &str) -> Vec<String> {
 }
 
 /// The text of a file of the project.
-pub fn read(path: impl AsRef<Path>) -> String {
+pub(crate) fn read(path: impl AsRef<Path>) -> String {
     let path = root().join(path);
     std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
 /// A Rust file without its tests.
-pub fn shipped(text: &str) -> &str {
+pub(crate) fn shipped(text: &str) -> &str {
     text.split("#[cfg(test)]").next().unwrap_or(text)
 }
 
 /// A text's lines of code: no comments, no empty ones.
-pub fn code(text: &str) -> impl Iterator<Item = &str> {
+pub(crate) fn code(text: &str) -> impl Iterator<Item = &str> {
     text.lines().filter(|line| !line.trim().is_empty() && !line.trim_start().starts_with("//"))
 }

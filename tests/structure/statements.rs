@@ -7,13 +7,13 @@
 use similar::{Algorithm, capture_diff_slices, diff_ratio};
 
 /// How alike the statements of two texts are, 0 to 1: twice the tokens in common over the tokens in all.
-pub fn likeness(wgsl: &str, rust: &str) -> f32 {
+pub(crate) fn likeness(wgsl: &str, rust: &str) -> f32 {
     let (left, right) = (normalised(wgsl), normalised(rust));
     diff_ratio(&capture_diff_slices(Algorithm::Lcs, &left, &right), left.len(), right.len())
 }
 
 /// The tokens of all functions of a text, in one form for both languages.
-pub fn normalised(text: &str) -> Vec<String> {
+pub(crate) fn normalised(text: &str) -> Vec<String> {
     let tokens = tokens(text);
     let bodies: Vec<String> = functions(&tokens).into_iter().flat_map(|(name, body)| named(name, body)).collect();
     let steps: [fn(&[String]) -> Vec<String>; 7] =

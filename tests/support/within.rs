@@ -1,6 +1,6 @@
 //! A tiny experiment that runs within the test's own process, on any disk.
 
-use skilltree::backend::cpu::CpuBackend;
+use skilltree::backend::cpu::cpu_backend;
 use skilltree::config::plan::Plan;
 use skilltree::config::{Overrides, load};
 use skilltree::run_folder::file_system::Disk;
@@ -65,7 +65,7 @@ impl Experiment {
         if folder.state() == State::Complete {
             return Ok(());
         }
-        let mut backend = CpuBackend::new(1, None).map_err(RunError::Backend)?;
+        let mut backend = cpu_backend(1, None).map_err(RunError::Backend)?;
         let provenance = Provenance { seeds: self.plan.seeds.clone(), ..Provenance::default() };
         let options = Options { cohort: Some(1), ..Options::default() };
         run(&self.plan, &self.groups, folder, &mut backend, options, provenance, callbacks)

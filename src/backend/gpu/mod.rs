@@ -20,7 +20,7 @@ pub mod workgroup_weights;
 
 use super::{Backend, BackendError, Cohort, Stop, Test, fresh};
 use crate::env::workgroup::CohortData;
-use crate::layout::{Dispatch, Episode, LearnerState, Robot};
+use crate::layout::{Dispatch, Episode, LearnerState, Robot, TRIAL_WORDS};
 use bytemuck::Zeroable;
 use conformance::{Verdict, examine};
 use device::Device;
@@ -358,7 +358,7 @@ fn of(cohort: &Cohort, learners: u32) -> Dispatch {
         skills: cohort.skills as u32,
         nets_stride: cohort.nets_stride as u32,
         lessons_stride: cohort.lessons_stride as u32,
-        rows_stride: cohort.rows_stride as u32,
+        rows_stride: (cohort.rows_stride / TRIAL_WORDS) as u32,
         learners,
         ..Dispatch::zeroed()
     }
