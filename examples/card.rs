@@ -20,10 +20,10 @@ use skilltree::bench::robot_walk::RobotWalk;
 use skilltree::bench::taught_replay::TaughtReplay;
 use skilltree::train::batch::train;
 use skilltree::train::batch_group::groups;
+use skilltree::train::callbacks::{Callbacks, Interrupted, Signal};
 use skilltree::train::parity::Work;
 use skilltree::train::result::LearnerResult;
-use skilltree::train::train_loop::{Halt, Keeper, Moment, Wish};
-use skilltree::{Backend, Experiment, Overrides, RecordError};
+use skilltree::{Backend, Experiment, Overrides};
 use std::time::{Duration, Instant};
 
 fn gpu(held: Option<u32>, in_flight: Option<usize>, iterations: Option<u32>) -> GpuBackend {
@@ -141,10 +141,10 @@ fn replay(learners: &[u32], rules: &str, variants: &str, transitions: u64, deadl
             let passes = (transitions / (u64::from(*count) * 110)).clamp(2, 200);
             let set = [
                 "arms=[\"taught-adam\"]".to_owned(),
-                format!("arm.taught-adam.learning.taught_passes={passes}"),
+                format!("arm.taught-adam.learning.pretrain_epochs={passes}"),
                 format!("arm.taught-adam.learning.optimiser=\"{optimiser}\""),
                 format!("learning.hidden={hidden}"),
-                "teacher.episodes=1".to_owned(),
+                "teacher.eval_episodes=1".to_owned(),
                 "skill.dock.trials=0".to_owned(),
             ];
             let set: Vec<&str> = set.iter().map(String::as_str).collect();
@@ -213,14 +213,10 @@ fn drilled(taught: &TaughtReplay, backend: &mut dyn Backend) -> (f64, f64) {
 /// Ends training when its time is over.
 struct Limit(Instant, u64);
 
-impl Keeper for Limit {
-    fn look(&mut self, trials: u64) -> Wish {
+impl Callbacks for Limit {
+    fn progress(&mut self, trials: u64) -> Signal {
         self.1 = trials;
-        if Instant::now() > self.0 { Wish::Stop } else { Wish::GoOn }
-    }
-
-    fn save(&mut self, _moment: &Moment<'_>) -> Result<(), RecordError> {
-        Ok(())
+        if Instant::now() > self.0 { Signal::Stop } else { Signal::Continue }
     }
 }
 
@@ -236,10 +232,10 @@ fn learners(counts: &[u32], part: u32, seconds: u64) {
             let trials = |whole: u32| (whole / part).max(1);
             let set = [
                 "arms=[\"hierarchical\"]".to_owned(),
-                "teacher.episodes=1".to_owned(),
+                "teacher.eval_episodes=1".to_owned(),
                 "evaluate.episodes=8".to_owned(),
                 "evaluate.at=[0]".to_owned(),
-                "skill.recharge.tested_at=[0]".to_owned(),
+                "skill.recharge.eval_at=[0]".to_owned(),
                 format!("skill.dock.trials={}", trials(300)),
                 format!("skill.pass-door.trials={}", trials(450)),
                 format!("skill.follow-right.trials={}", trials(350)),
@@ -268,7 +264,7 @@ fn learners(counts: &[u32], part: u32, seconds: u64) {
                         true,
                     )
                 }
-                Err(Halt::Stopped) => (0, 0, false),
+                Err(Interrupted::Stopped) => (0, 0, false),
                 Err(error) => panic!("{error}"),
             };
             println!(

@@ -168,7 +168,8 @@ fn swept(config: &str, axis: &str, more: &[&str]) -> Plan {
 /// Numbers of single learners keep nobody apart; whatever the teacher, the world or the nets' shapes know does.
 #[test]
 fn arms_share_a_batch_and_skills_where_their_learners_see_the_same() {
-    let cuts = ["world=../tests/support/small.toml", "arms=['taught-adam']", "teacher.lessons=16", "teacher.eval_episodes=1"];
+    let cuts =
+        ["world=../tests/support/small.toml", "arms=['taught-adam']", "teacher.lessons=16", "teacher.eval_episodes=1"];
     for (axis, expected) in [
         ("sweep.skill.dock.trials=[4, 7]", 1),
         ("sweep.skill.dock.max_steps=[9, 12]", 2),

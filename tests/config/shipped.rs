@@ -282,8 +282,8 @@ learning.learning_rate = 0.5
     for (from, to, line, message) in [
         ("extends = 'two'", "extends = 'six'", "extends = 'six'", "`six` is not one of the arms"),
         ("extends = 'two'", "extends = 'four'", "extends = ", "in a circle"),
-        ("extends = 'two'", "like = 3", "like = 3", "must be a string"),
-        ("title", "extends = 'two'\ntitle", "extends = 'two'", "unknown key `like`"),
+        ("extends = 'two'", "extends = 3", "extends = 3", "must be a string"),
+        ("title", "extends = 'two'\ntitle", "extends = 'two'", "unknown key `extends`"),
     ] {
         let error = attempt(&text.replacen(from, to, 1), WORLD).0.err().unwrap_or_else(|| panic!("accepted {to}"));
         println!("{error}\n");

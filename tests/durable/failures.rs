@@ -1,15 +1,13 @@
 //! Learners that are poisoned: found, named with their first bad transition, and without effect on others.
 
-use skilltree::backend::cpu::CpuBackend;
+use skilltree::backend::cpu::cpu_backend;
 #[cfg(feature = "gpu")]
 use skilltree::backend::gpu::{GpuBackend, GpuOptions};
 use skilltree::backend::{Backend, BackendError, Cohort, Stop, Test};
 use skilltree::config::plan::Plan;
 use skilltree::config::{Overrides, load};
 use skilltree::env::workgroup::CohortData;
-use skilltree::layout::phase::{PHASE_FAILED, PHASE_REPLAY};
-use skilltree::layout::{Episode, LESSON_HEADER, LearnerState, Robot};
-use skilltree::qnet::forward::net_of;
+use skilltree::layout::{Episode, LESSON_HEADER_WORDS, LearnerState, PHASE_FAILED, PHASE_REPLAY, Robot};
 use skilltree::run_folder::failures::{Divergence, Number, failures_of};
 use skilltree::run_folder::tables::{EVALUATIONS, TRIALS, read_evaluations, read_trials};
 use skilltree::run_folder::{FinishedRun, Provenance, RunFolder};
@@ -107,13 +105,13 @@ pub(crate) fn only_group(plan: &Plan) -> BatchGroup {
 }
 
 fn cpu() -> Box<dyn Backend> {
-    Box::new(CpuBackend::new(2, None).expect("threads"))
+    Box::new(cpu_backend(2, None).expect("threads"))
 }
 
 /// Word of a learner's nets at which the weight of an input to a hidden unit of a child's net stands.
 fn weight(group: &BatchGroup, child: usize, input: usize, unit: usize) -> usize {
     let skill = &group.shape.skills[0];
-    net_of(skill, 0, child as u32) as usize + 32 * input + unit
+    skill.net_offset(child as u32) + 32 * input + unit
 }
 
 fn bytes(result: &LearnerResult) -> Vec<u8> {
@@ -148,7 +146,7 @@ fn check(plan: &Plan, group: &BatchGroup, memory: &Cohort, failure: &Divergence,
     let lesson = &lessons[(shape.memory_offset + transition.lesson * shape.lesson_stride) as usize..];
     // Replay goes from the last step to the first.
     assert_eq!(transition.step, lesson[0] - 1);
-    let record = &lesson[LESSON_HEADER + (transition.step * shape.record_words) as usize..];
+    let record = &lesson[LESSON_HEADER_WORDS + (transition.step * shape.record_words) as usize..];
     assert_eq!(transition.record, record[..shape.record_words as usize]);
     let children = ["turn+15", "turn-15", "turn+60", "turn-60", "move+12", "move-12"];
     assert_eq!(transition.child, children[(record[8] & 0xff) as usize]);
@@ -207,7 +205,7 @@ fn what_the_last_update_spoils_is_found_before_the_test() {
         (weight(&group, 1, rows - 1, 0), "turn-15.2.bias", vec![0]),
     ];
     for (word, tensor, index) in cases {
-        let mut backend = CpuBackend::new(1, Some(1)).expect("threads");
+        let mut backend = cpu_backend(1, Some(1)).expect("threads");
         backend.load(group.cohort(&plan, &group.learners(&plan))).expect("memory");
         let after = Stop { skill: 0, trial: 2 };
         // All three replays of the second trial are over, one iteration later the learner would wait for its test.

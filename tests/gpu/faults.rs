@@ -2,8 +2,8 @@
 
 use super::broken::{broken, with};
 use super::work::{DOCKING, FIVE, cpu, some};
-use skilltree::backend::gpu::source::{EVALUATE, STEP, TRAIN};
 use skilltree::backend::UNWRITTEN;
+use skilltree::backend::gpu::source::{EVALUATE, STEP, TRAIN};
 use skilltree::backend::parity::{self, Difference};
 use skilltree::backend::{Backend, Test};
 use skilltree::layout::Robot;

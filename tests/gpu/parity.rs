@@ -3,8 +3,8 @@
 use super::adapter::{gpu, opened};
 use super::lessons::remembered;
 use super::work::{DOCKING, FIVE, GROWN, TREE, cpu, reference, some};
-use skilltree::backend::gpu::GpuOptions;
 use skilltree::backend::UNWRITTEN;
+use skilltree::backend::gpu::GpuOptions;
 use skilltree::backend::parity;
 use skilltree::cli::CliError;
 use skilltree::layout::{ELEMENTARY_STEP_WORDS, PHASE_DONE, STEP_WORDS, Step};

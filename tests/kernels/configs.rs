@@ -53,7 +53,7 @@ pub(crate) const TREE: &str = r#"
     at = []
     episodes = 1
     [teacher]
-    episodes = 1
+    eval_episodes = 1
     [learning]
     init_range = 0.4
     [skill.dock]

@@ -1,7 +1,7 @@
 //! Nets in f64 with the standard library's tanh, and their slopes by differences.
 
 use super::observations::{bit, bumpers, readings, reflected, sees_light};
-use skilltree::config::plan::{Child, Input, Skill, Threshold};
+use skilltree::config::plan::{Child, Input, SkillPlan, Threshold};
 use skilltree::layout::{LANES, SkillShape, Step};
 
 /// The nets of one skill: rows of 32 weights, as the module's documentation lays them out.
@@ -70,7 +70,7 @@ pub(crate) fn most(values: impl IntoIterator<Item = f64>) -> f64 {
 }
 
 /// What a skill's nets are given for a recorded step, from what the config's documentation says of its inputs.
-pub(crate) fn inputs64(skill: &Skill, rooms: usize, step: &Step) -> Vec<f64> {
+pub(crate) fn inputs64(skill: &SkillPlan, rooms: usize, step: &Step) -> Vec<f64> {
     let seen = &step.observation;
     let (sonar, compass) = (readings(seen), f64::from(seen.compass));
     let near = |reading: f64, scale: f32| 2.0 * (-(reading - 12.0) / f64::from(scale)).exp() - 1.0;
@@ -107,13 +107,13 @@ pub(crate) fn inputs64(skill: &Skill, rooms: usize, step: &Step) -> Vec<f64> {
 
 /// The skills of one learner.
 pub(crate) struct Tree64<'a> {
-    skills: &'a [Skill],
+    skills: &'a [SkillPlan],
     nets: Vec<Nets64>,
     rooms: usize,
 }
 
 impl<'a> Tree64<'a> {
-    pub(crate) fn new(skills: &'a [Skill], rooms: usize, shapes: &[SkillShape], nets: &[f32]) -> Self {
+    pub(crate) fn new(skills: &'a [SkillPlan], rooms: usize, shapes: &[SkillShape], nets: &[f32]) -> Self {
         Self { skills, nets: shapes.iter().map(|shape| Nets64::of(nets, shape)).collect(), rooms }
     }
 

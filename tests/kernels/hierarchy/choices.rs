@@ -165,14 +165,14 @@ const DEEP: &str = r#"
 fn every_level_draws_for_itself() {
     let mut next = random(52);
     let text = format!("{TREE}{DEEP}");
-    for (heat, choice) in [("0.0", "learned"), ("3.0", "learned"), ("3.0", "random"), ("3.0", "ordered")] {
+    for (heat, choice) in [("0.0", "learned"), ("3.0", "learned"), ("3.0", "random"), ("3.0", "fixed-priority")] {
         let set = [
             SILENT.to_owned(),
             "root=home".to_owned(),
             format!("skill.home.learning.child_inverse_temperature={heat}"),
-            format!("skill.leave.choice={choice}"),
+            format!("skill.leave.policy={choice}"),
             // The root's own order decides: it always takes `leave`.
-            "skill.home.choice=ordered".to_owned(),
+            "skill.home.policy=fixed-priority".to_owned(),
         ];
         let learner = Learner::new(plan_with(&text, &set.each_ref().map(String::as_str)));
         let (tree, home, leave) = (learner.tree(), learner.skill("home"), learner.skill("leave"));
@@ -218,8 +218,8 @@ fn every_level_draws_for_itself() {
 fn baselines_choose_among_what_is_applicable() {
     let mut next = random(53);
     let mut sizes = Set::new();
-    for choice in ["random", "ordered"] {
-        let set = format!("skill.top.choice={choice}");
+    for choice in ["random", "fixed-priority"] {
+        let set = format!("skill.top.policy={choice}");
         let learner = Learner::new(plan_with(TREE, &[SILENT, &set]));
         let (tree, root) = (learner.tree(), learner.skill("top"));
         for _ in 0..25 {
@@ -262,14 +262,14 @@ fn tests_follow_the_rules_step_by_step() {
         let (tree, root) = (learner.tree(), learner.skill("top"));
         let own = &learner.plan.arms[0].skills[root];
         let goal = |child: &Child| match child {
-            Child::Skill(below) => Choice::Skill(members(learner.plan.arms[0].skills[*below].ends)),
+            Child::Skill(below) => Choice::Skill(members(learner.plan.arms[0].skills[*below].goal)),
             Child::Action(action) => Choice::Action(*action as u32),
         };
         let rules = Rules {
-            persist: own.persistence.tests,
-            applicability: own.persistence.applicability,
-            interrupt: own.persistence.interrupt,
-            patience: (own.persistence.child_timeout > 0).then_some(own.persistence.child_timeout),
+            persist: own.params.persist_tests == 1,
+            applicability: own.params.applicability == 1,
+            interrupt: own.params.interrupt == 1,
+            patience: (own.params.child_timeout > 0).then_some(own.params.child_timeout),
         };
         let (mut held, mut free, mut changes) = (0, 0, 0);
         for number in 0..60 {

@@ -94,7 +94,8 @@ fn memories_and_doors_along_a_walk() {
     // The last walk is noisy, so that the compass is off and readings differ.
     let noisy = "robot.noise={ actuator = 0.02, sonar = 0.1, light = 0.1, compass = 3.0 }";
     for noise in [SILENT, noisy] {
-        let traces = ["robot.memory={ light = 0.75, doors = 0.875, ranges = 0.6 }", "skill.top.applicable={}"];
+        let traces =
+            ["robot.memory={ light_decay = 0.75, door_decay = 0.875, range_decay = 0.6 }", "skill.top.applicable={}"];
         let learner = Learner::new(plan_with(TREE, &[&[noise, inputs], traces.as_slice()].concat()));
         let root = learner.skill("top");
         let (skill, params) = (&learner.shared.skills[root], &learner.params[root]);
@@ -195,7 +196,7 @@ fn lessons_of_skills_that_remember_hold_what_they_do() {
         "teacher.lessons=8",
         "learning.pretrain_epochs=1",
         "learning.replays=1",
-        "robot.memory={ light = 0.75, doors = 0.875, ranges = 0.6 }",
+        "robot.memory={ light_decay = 0.75, door_decay = 0.875, range_decay = 0.6 }",
     ];
     let plan = plan_with(TREE, &set);
     let group = only_group(&plan);

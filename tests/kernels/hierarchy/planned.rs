@@ -6,14 +6,14 @@ use super::super::random::random;
 use glam::Vec2;
 use skilltree::backend::cpu::cpu_backend;
 use skilltree::backend::{Backend, Test};
-use skilltree::config::plan::{Plan, Skill};
+use skilltree::config::plan::{Plan, SkillPlan};
 use skilltree::layout::Episode;
 use skilltree::teacher::value_iteration::Planner;
-use skilltree::train::batch_group::{Group, groups, terms_of};
+use skilltree::train::batch_group::{BatchGroup, groups, terms_of};
 use skilltree::world::Pose;
 
 /// The tree with all four skills planned; children in no tidy order.
-fn planned() -> (Plan, Group) {
+fn planned() -> (Plan, BatchGroup) {
     let set = [
         "skill.dock.oracle=true",
         "skill.door.oracle=true",
@@ -28,12 +28,12 @@ fn planned() -> (Plan, Group) {
     (plan, group)
 }
 
-fn planner(plan: &Plan, group: &Group, skill: &Skill) -> Planner {
+fn planner(plan: &Plan, group: &BatchGroup, skill: &SkillPlan) -> Planner {
     Planner::new(plan.world(), &group.shared, skill, &terms_of(&plan.arms[0]))
 }
 
 /// Values of all children at a pose of a trial that began in room `origin`.
-fn consulted(group: &Group, skill: usize, origin: u32, pose: Pose) -> Vec<f32> {
+fn consulted(group: &BatchGroup, skill: usize, origin: u32, pose: Pose) -> Vec<f32> {
     let children = group.shared.skills[skill].children as usize;
     seen(&group.shared, &[], &[], |robot| {
         robot.reset(pose);
@@ -88,7 +88,7 @@ fn tables_hold_the_planners_choices() {
             };
             let says = nearest.iter().map(|at| {
                 let pose = Pose { x: at.x, y: at.y, heading };
-                let value = planner.value(origin, pose) / skill.learning.reward_scale;
+                let value = planner.value(origin, pose) / skill.params.reward_scale;
                 (planner.choose(&group.shared, origin, pose), value)
             });
             let best = greatest(&found);
@@ -119,7 +119,7 @@ fn planned_skills_need_no_nets() {
     let learners = group.learners(&plan);
     let cohort = group.cohort(&plan, &learners);
     let root = cohort.skills - 1;
-    assert!(plan.arms[0].skills[..root].iter().all(|skill| skill.trials == 0 && skill.lessons == 0));
+    assert!(plan.arms[0].skills[..root].iter().all(|skill| skill.params.trials == 0 && skill.params.lessons == 0));
     let tests = |poison: bool| -> Vec<Episode> {
         let mut cohort = cohort.clone();
         let end = cohort.shared.skills[root].nets_offset as usize;

@@ -11,15 +11,15 @@ use skilltree::layout::{Episode, LearnerState, Robot};
 use skilltree::run_folder::folder::WORLD;
 use skilltree::run_folder::tables::{EVALUATIONS, TRIALS, read_evaluations, read_trials};
 use skilltree::run_folder::{Provenance, RunFolder};
-use skilltree::train::batch_group::{Group, groups};
-use skilltree::train::pretraining::families;
-use skilltree::train::run::{Observer, Options, RunError, run};
+use skilltree::train::batch_group::{BatchGroup, groups};
+use skilltree::train::pretraining::shared_skills;
+use skilltree::train::run::{Options, RunError, run};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::Path;
 use tempfile::TempDir;
 
-/// Arms of two families and of several shapes, and one that shares with nobody.
+/// Arms that share skills in two ways and of several shapes, and one that shares with nobody.
 pub(crate) const ARMS: &str = r#"
     [arm.plain]
     [arm.steps.skill.go-home]
@@ -62,14 +62,6 @@ pub(crate) fn short(arms: &str, set: &[&str]) -> Plan {
         "teacher.eval_episodes=3",
     ];
     home(arms, &[cuts.as_slice(), set].concat())
-}
-
-/// An observer that does not care.
-pub(super) struct Nobody;
-
-impl Observer for Nobody {
-    fn trials(&mut self, _finished: u64) {}
-    fn committed(&mut self, _finished: usize) {}
 }
 
 /// A backend that fails after some stretches of work.
@@ -123,7 +115,7 @@ impl Backend for Frail {
 }
 
 /// Runs a plan into a folder, or as far as the backend lasts; what is left of it.
-fn attempt(plan: &Plan, groups: &[Group], dir: &Path, cohort: usize, lasts: usize) -> Result<usize, RunError> {
+fn attempt(plan: &Plan, groups: &[BatchGroup], dir: &Path, cohort: usize, lasts: usize) -> Result<usize, RunError> {
     let worlds: Vec<(&str, &str)> = plan.worlds.iter().map(|w| (w.file.as_str(), w.text.as_str())).collect();
     assert_eq!(worlds[0].0, WORLD);
     let folder = RunFolder::open(dir, &plan.resolved, &worlds)?;
@@ -131,7 +123,7 @@ fn attempt(plan: &Plan, groups: &[Group], dir: &Path, cohort: usize, lasts: usiz
     let inner = cpu_backend(2, Some(700)).expect("threads");
     let mut backend = Frail { inner, left: lasts };
     let options = Options { cohort: Some(cohort), ..Options::default() };
-    run(plan, groups, folder, &mut backend, options, Provenance::default(), &mut Nobody)?;
+    run(plan, groups, folder, &mut backend, options, Provenance::default(), &mut ())?;
     Ok(backend.left)
 }
 
@@ -157,11 +149,11 @@ pub(crate) fn left(dir: &Path, arm: &str) -> BTreeMap<String, Vec<u8>> {
 pub(crate) const NAMES: [&str; 7] = ["plain", "steps", "learned", "random", "shared-net", "other-dock", "leave"];
 
 #[test]
-fn shared_stems_leave_what_each_arm_leaves_alone() {
+fn shared_skills_leave_what_each_arm_leaves_alone() {
     let plan = short(ARMS, &[]);
     let all = groups(&plan).unwrap_or_else(|error| panic!("{error}"));
     assert!(all.len() >= 4, "{} groups", all.len());
-    let sharing: Vec<Vec<usize>> = families(&plan).into_iter().map(|family| family.arms).collect();
+    let sharing: Vec<Vec<usize>> = shared_skills(&plan).into_iter().map(|shared| shared.arms).collect();
     assert_eq!(sharing, [vec![0, 1, 2, 3, 4], vec![5], vec![6]]);
     let parent = TempDir::new().expect("a folder");
     let together = parent.path().join("together");

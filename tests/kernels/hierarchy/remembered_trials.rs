@@ -5,7 +5,7 @@ use super::super::lessons::remembered;
 use super::super::nets64::{Tree64, most};
 use super::persistence::{Choice, Chooser, Reason, Rules, Set, members};
 use super::three_levels::{home, learned, only_group};
-use skilltree::config::plan::{Child, Skill, Threshold};
+use skilltree::config::plan::{Child, SkillPlan, Threshold};
 use skilltree::layout::{NO_CHILD, Step, TERMINATED};
 use std::collections::BTreeMap;
 
@@ -32,29 +32,29 @@ fn remembered_trials_follow_the_rules() {
             let nets = &cohort.nets[learner * cohort.nets_stride..][..cohort.nets_stride];
             let tree = Tree64::new(skills, 2, &cohort.shared.skills, nets);
             for name in ["leave", "go-home"] {
-                let (number, params) = (number(&plan, name), &skills[number(&plan, name)]);
+                let (number, own) = (number(&plan, name), &skills[number(&plan, name)]);
+                let params = &own.params;
                 for trial in remembered(&cohort, learner, number) {
                     let header = trial.header;
                     let goal = |child: &Child| match child {
-                        Child::Skill(below) => Choice::Skill(members(skills[*below].ends)),
+                        Child::Skill(below) => Choice::Skill(members(skills[*below].goal)),
                         Child::Action(action) => Choice::Action(*action as u32),
                     };
-                    let persistence = params.persistence;
                     let rules = Rules {
-                        persist: persistence.training,
-                        applicability: persistence.applicability,
-                        interrupt: persistence.interrupt,
-                        patience: (persistence.child_timeout > 0).then_some(persistence.child_timeout),
+                        persist: params.persist_training == 1,
+                        applicability: params.applicability == 1,
+                        interrupt: params.interrupt == 1,
+                        patience: (params.child_timeout > 0).then_some(params.child_timeout),
                     };
-                    let choices = params.children.iter().map(goal).collect();
+                    let choices = own.children.iter().map(goal).collect();
                     let mut chooser = Chooser { choices, rules, running: None, before: Set::new() };
                     let (mut happened, mut earned) = (Set::new(), 0.0);
                     for (step, record) in trial.records.iter().enumerate() {
                         let says = || format!("{name}, learner {learner}, step {step}: {chooser:?}");
                         let worths = tree.worths(number, record);
                         let applicable = members(record.high_level >> 8 & 0xff);
-                        for (child, threshold) in params.applicable.iter().enumerate() {
-                            let (word, below) = (record.value[child], &params.children[child]);
+                        for (child, threshold) in own.applicable.iter().enumerate() {
+                            let (word, below) = (record.value[child], &own.children[child]);
                             let over = *below == Child::Skill(leave);
                             // What a skill over skills is worth depends on what it is doing.
                             let known = !over || chooser.running.is_none_or(|(running, _)| running != child);
@@ -92,7 +92,7 @@ fn remembered_trials_follow_the_rules() {
                         let pay: f32 = happened.iter().map(|event| params.reward[*event]).sum();
                         assert_eq!(record.reward, pay, "{}", says());
                         earned += pay;
-                        let ended = happened.iter().any(|event| params.ends >> event & 1 == 1);
+                        let ended = happened.iter().any(|event| own.goal >> event & 1 == 1);
                         assert_eq!(ended, step + 1 == header.steps as usize && header.end == TERMINATED, "{}", says());
                         let child = (word & 0xff) as usize;
                         assert!(allowed.contains(&child), "{}", says());
@@ -101,7 +101,7 @@ fn remembered_trials_follow_the_rules() {
                         }
                         steps += 1;
                         held += u32::from(reasons.is_empty());
-                        applied += u32::from(candidates.len() < params.children.len());
+                        applied += u32::from(candidates.len() < own.children.len());
                         chooser.take(child, !reasons.is_empty(), applicable);
                     }
                     assert_eq!(header.reward, earned);
@@ -118,7 +118,7 @@ fn remembered_trials_follow_the_rules() {
 }
 
 /// What `leave` is worth while nobody has asked it for a step: the best of its values, given the worth of `pass-door`.
-fn idle_worth(tree: &Tree64<'_>, skills: &[Skill], record: &Step) -> f64 {
+fn idle_worth(tree: &Tree64<'_>, skills: &[SkillPlan], record: &Step) -> f64 {
     let leave = skills.iter().position(|skill| skill.name == "leave").expect("the skill");
     let worths = tree.worths(leave, record);
     let mut own = *record;
@@ -133,9 +133,9 @@ fn idle_worth(tree: &Tree64<'_>, skills: &[Skill], record: &Step) -> f64 {
 /// Baselines that choose at random or in order do so in training too.
 #[test]
 fn baselines_choose_in_training_too() {
-    for choice in ["random", "ordered"] {
+    for choice in ["random", "fixed-priority"] {
         let short = ["skill.dock.trials=4", "skill.pass-door.trials=4", "skill.follow-right.trials=2", "seeds='0..2'"];
-        let root = format!("skill.go-home.choice={choice}");
+        let root = format!("skill.go-home.policy={choice}");
         let plan = home("", &[short.as_slice(), &[&root, "skill.go-home.applicability=true"]].concat());
         let (cohort, _) = learned(&plan, &only_group(&plan));
         let mut counts = BTreeMap::<Vec<usize>, [u32; 2]>::new();

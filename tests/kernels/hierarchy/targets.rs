@@ -83,7 +83,11 @@ pub(super) fn learner(backup: Backup, shared_net: bool) -> Learner {
         format!("skill.top.learning.shared_net={shared_net}"),
     ];
     let mut set: Vec<&str> = own.iter().map(String::as_str).collect();
-    set.extend(["skill.top.learning.optimiser=sgd", "skill.top.learning.learning_rate=0.5", "skill.top.learning.momentum=0.0"]);
+    set.extend([
+        "skill.top.learning.optimiser=sgd",
+        "skill.top.learning.learning_rate=0.5",
+        "skill.top.learning.momentum=0.0",
+    ]);
     let mut learner = Learner::new(plan_with(TREE, &set));
     let root = learner.skill("top");
     let params = &mut learner.params[root];

@@ -11,7 +11,7 @@ use skilltree::layout::{
     Dispatch, EPISODE_TERMINATED, Episode, LANES, NO_CHILD, PHASE_DONE, PHASE_REPLAY, PHASE_TEACH, TrialRecord,
 };
 use skilltree::policy::applicability::run_child;
-use skilltree::train::batch_group::{Group, groups};
+use skilltree::train::batch_group::{BatchGroup, groups};
 use std::collections::BTreeMap;
 
 /// Home is docked to the charger; from the other room the way there leads through the door.
@@ -25,7 +25,7 @@ const HOME: &str = r#"
     [teacher]
     lessons = 32
     discount = 0.85
-    episodes = 20
+    eval_episodes = 20
     [learning]
     replays = 20
     pretrain_epochs = 20
@@ -99,7 +99,7 @@ pub(crate) fn home(arms: &str, set: &[&str]) -> Plan {
     plan_in("easy", &format!("{HOME}{arms}"), set)
 }
 
-pub(crate) fn only_group(plan: &Plan) -> Group {
+pub(crate) fn only_group(plan: &Plan) -> BatchGroup {
     let mut groups = groups(plan).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(groups.len(), 1);
     groups.remove(0)
@@ -110,12 +110,12 @@ pub(crate) fn reach(backend: &mut dyn Backend, stop: Stop) {
 }
 
 /// A cohort that has learned everything, and its tests of each skill before the first trial and after the last.
-pub(super) fn learned(plan: &Plan, group: &Group) -> (Cohort, Vec<[Vec<Episode>; 2]>) {
+pub(super) fn learned(plan: &Plan, group: &BatchGroup) -> (Cohort, Vec<[Vec<Episode>; 2]>) {
     let mut backend = cpu_backend(2, None).expect("threads");
     backend.load(group.cohort(plan, &group.learners(plan))).expect("memory");
     let mut tests = Vec::new();
     for (number, skill) in (0..).zip(&plan.arms[0].skills) {
-        tests.push([0, skill.trials].map(|trial| {
+        tests.push([0, skill.params.trials].map(|trial| {
             reach(&mut backend, Stop { skill: number, trial });
             backend.evaluate(Test { skill: number, number: trial, episodes: 40 }).expect("tests")
         }));
@@ -139,8 +139,8 @@ fn three_levels_learn_to_go_home() {
             bytemuck::cast_slice(&cohort.rows[learner * cohort.rows_stride..][..cohort.rows_stride]);
         let mut expected = Vec::new();
         for (number, skill) in (0..).zip(&plan.arms[0].skills) {
-            expected.extend((0..skill.lessons).map(|trial| (number, trial, 1)));
-            expected.extend((0..skill.trials).map(|trial| (number, trial, 0)));
+            expected.extend((0..skill.params.lessons).map(|trial| (number, trial, 1)));
+            expected.extend((0..skill.params.trials).map(|trial| (number, trial, 0)));
         }
         let found: Vec<(u32, u32, u32)> =
             rows[..state.rows as usize].iter().map(|row| (row.skill, row.trial, row.taught)).collect();

@@ -5,7 +5,6 @@ use super::super::lessons::remembered;
 use super::super::nets64::{Nets64, Tree64, inputs64, most};
 use super::super::random::random;
 use super::persistence::members;
-use super::pretraining::Nobody;
 use super::three_levels::{home, only_group, reach};
 use skilltree::backend::cpu::cpu_backend;
 use skilltree::backend::{Backend, Cohort, Stop};
@@ -13,19 +12,19 @@ use skilltree::config::plan::Plan;
 use skilltree::layout::TERMINATED;
 use skilltree::run_folder::weights::read_weights;
 use skilltree::run_folder::{Provenance, RunFolder};
-use skilltree::train::batch::{train, train_stem};
-use skilltree::train::batch_group::Group;
+use skilltree::train::batch::{pretrain, train};
+use skilltree::train::batch_group::BatchGroup;
 use skilltree::train::result::LearnerResult;
 use skilltree::train::run::{Options, run};
 use tempfile::TempDir;
 
 /// All that the plan's only arm leaves, and its learners' memory.
-pub(super) fn trained(plan: &Plan, group: &Group) -> (Vec<LearnerResult>, Cohort) {
+pub(super) fn trained(plan: &Plan, group: &BatchGroup) -> (Vec<LearnerResult>, Cohort) {
     let mut backend = cpu_backend(2, None).expect("threads");
     let ids = group.learners(plan);
-    let stems = train_stem(plan, group, &ids, None, &mut backend, &mut ()).expect("the CPU does not fail");
-    let stem_of = |id| stems.iter().find(|stem| stem.id == id);
-    let results = train(plan, group, &ids, &stem_of, None, &mut backend, &mut ()).expect("the CPU does not fail");
+    let below = pretrain(plan, group, &ids, None, &mut backend, &mut ()).expect("the CPU does not fail");
+    let pretrained = |id| below.iter().find(|learner| learner.id == id);
+    let results = train(plan, group, &ids, &pretrained, None, &mut backend, &mut ()).expect("the CPU does not fail");
     let memory = backend.memory().expect("memory").clone();
     (results, memory)
 }
@@ -35,11 +34,11 @@ fn seen(plan: &Plan, cohort: &Cohort, learner: usize, skill: usize) -> Vec<(f64,
     let (own, shape) = (&plan.arms[0].skills[skill], &cohort.shared.skills[skill]);
     let nets = Nets64::of(&cohort.nets[learner * cohort.nets_stride..][..cohort.nets_stride], shape);
     let lessons = remembered(cohort, learner, skill);
-    let kept = own.trials.min(own.learning.replay_capacity);
-    let latest = (0..own.trials).rev().take(kept.div_ceil(2) as usize);
+    let kept = own.params.trials.min(own.params.replay_capacity);
+    let latest = (0..own.params.trials).rev().take(kept.div_ceil(2) as usize);
     let mut seen = Vec::new();
     for trial in latest {
-        let lesson = &lessons[(trial % own.learning.replay_capacity) as usize];
+        let lesson = &lessons[(trial % own.params.replay_capacity) as usize];
         for step in lesson.steps() {
             seen.push((most(nets.values(&inputs64(own, 2, step))), lesson.header.end == TERMINATED));
         }
@@ -141,8 +140,7 @@ fn learned_thresholds_are_those_of_a_direct_fit() {
     let dir = parent.path().join("run");
     let worlds: Vec<(&str, &str)> = plan.worlds.iter().map(|w| (w.file.as_str(), w.text.as_str())).collect();
     let folder = RunFolder::open(&dir, &plan.resolved, &worlds).expect("a run folder");
-    run(&plan, &[group], folder, &mut backend, Options::default(), Provenance::default(), &mut Nobody)
-        .expect("it runs");
+    run(&plan, &[group], folder, &mut backend, Options::default(), Provenance::default(), &mut ()).expect("it runs");
     for (seed, result) in results.iter().enumerate() {
         let path = dir.join(format!("skills/base-{seed}.safetensors"));
         let (nets, metadata) = read_weights(&std::fs::read(&path).expect("weights"), &path).expect("weights");

@@ -23,7 +23,7 @@ fn small() -> Plan {
         episodes = 1
         [teacher]
         lessons = 8
-        episodes = 1
+        eval_episodes = 1
         [learning]
         replays = 4
         replay_capacity = 3

@@ -22,7 +22,7 @@ use skilltree::kernels::plain::PLAIN;
 use skilltree::layout::{LANES, Moved, RAYS, Robot};
 use skilltree::math::functions::sin_cos;
 use skilltree::math::reduce::Lanes;
-use skilltree::train::observation::{SILENT, Senses, floor_only, robot_at};
+use skilltree::train::observation::{SILENT, SensorValues, floor_only, robot_at};
 use skilltree::world::{Pose, World};
 
 /// What is allowed between f32 and exact geometry, inches.
@@ -166,9 +166,9 @@ fn stepped(shared: &CohortData, robots: &[Robot], steps: u32) -> Vec<Robot> {
 }
 
 /// What a robot without noise senses, through the shipped kernel.
-fn sense(shared: &CohortData, poses: &[Pose]) -> Vec<Senses> {
+fn sense(shared: &CohortData, poses: &[Pose]) -> Vec<SensorValues> {
     let robots: Vec<Robot> = poses.iter().map(|pose| robot_at(*pose, &SILENT, 1, 2)).collect();
-    stepped(shared, &robots, 1).iter().map(Senses::of).collect()
+    stepped(shared, &robots, 1).iter().map(SensorValues::of).collect()
 }
 
 /// The body after an action whose length is off by the factor `slip`.

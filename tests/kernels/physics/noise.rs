@@ -6,10 +6,11 @@ use super::super::random::random;
 use super::{Place, offices, stepped};
 use skilltree::backend::UNWRITTEN;
 use skilltree::backend::parity;
-use skilltree::config::plan::{Noise, NoiseKind};
+use skilltree::config::plan::Noise;
 use skilltree::env::motion::{COLLISION, FORWARD, NO_ACTION};
+use skilltree::layout::choices::{NOISE_GAUSSIAN, NOISE_UNIFORM};
 use skilltree::layout::{Observation, Robot};
-use skilltree::train::observation::{SILENT, Senses, robot_at};
+use skilltree::train::observation::{SILENT, SensorValues, robot_at};
 use skilltree::world::Pose;
 
 /// Mean, standard deviation and greatest deviation from 0.
@@ -40,12 +41,12 @@ fn crowd(action: u32, noise: &Noise, count: u32) -> Vec<Robot> {
 #[test]
 fn noise_has_the_stated_mean_deviation_and_bounds() {
     let count = 60_000;
-    for kind in [NoiseKind::Gaussian, NoiseKind::Uniform] {
+    for kind in [NOISE_GAUSSIAN, NOISE_UNIFORM] {
         let noise = Noise { kind, actuator: 0.08, sonar: 0.10, light: 0.0, compass: 2.865 };
         // The bell has unit deviation and ends at sqrt(12) of them; flat noise has its amount as half-width.
         let (unit, end) = match kind {
-            NoiseKind::Gaussian => (1.0, 12.0_f64.sqrt() + 1.0e-3),
-            NoiseKind::Uniform => (1.0 / 3.0_f64.sqrt(), 1.0 + 1.0e-4),
+            NOISE_GAUSSIAN => (1.0, 12.0_f64.sqrt() + 1.0e-3),
+            _ => (1.0 / 3.0_f64.sqrt(), 1.0 + 1.0e-4),
         };
         let forward = crowd(FORWARD, &noise, count);
         let slips: Vec<f64> = forward.iter().map(|r| (f64::from(r.x) - 60.0) / 12.0 - 1.0).collect();
@@ -56,7 +57,7 @@ fn noise_has_the_stated_mean_deviation_and_bounds() {
             check_moments("turn", &turned.iter().map(slip).collect::<Vec<_>>(), 0.08 * unit, 0.08 * end);
         }
         let still = crowd(255, &noise, count);
-        let senses: Vec<Senses> = still.iter().map(Senses::of).collect();
+        let senses: Vec<SensorValues> = still.iter().map(SensorValues::of).collect();
         let compass: Vec<f64> = senses.iter().map(|s| (f64::from(s.compass) + 180.0) % 360.0 - 180.0).collect();
         check_moments("compass", &compass, 2.865 * unit, 2.865 * end);
         let mut sides = Vec::new();
@@ -78,17 +79,17 @@ fn noise_has_the_stated_mean_deviation_and_bounds() {
     }
     let quiet = crowd(FORWARD, &SILENT, 100);
     assert!(quiet.iter().all(|r| (r.x, r.y, r.heading) == (72.0, 60.0, 0.0)));
-    assert!(quiet.iter().all(|r| Senses::of(r).compass == 0.0 && Senses::of(r).sonar[0] == 48));
+    assert!(quiet.iter().all(|r| SensorValues::of(r).compass == 0.0 && SensorValues::of(r).sonar[0] == 48));
 }
 
 /// The CPU moves robots side by side: in any number, with and without an action, and with anything in what a step writes.
 #[test]
 fn a_robot_among_others_is_the_robot_alone() {
     let place = &offices()[0];
-    let noise = Noise { kind: NoiseKind::Gaussian, actuator: 0.08, sonar: 0.10, light: 0.10, compass: 2.865 };
+    let noise = Noise { kind: NOISE_GAUSSIAN, actuator: 0.08, sonar: 0.10, light: 0.10, compass: 2.865 };
     let mut next = random(31);
     let mut robot = |number: u32| {
-        let kind = if number % 5 == 1 { NoiseKind::Uniform } else { NoiseKind::Gaussian };
+        let kind = if number % 5 == 1 { NOISE_UNIFORM } else { NOISE_GAUSSIAN };
         let mut robot = robot_at(place.pose(&mut next, 0.0), &Noise { kind, ..noise }, 7, number);
         robot.action = if number % 7 == 6 { NO_ACTION } else { number % 6 };
         robot.sensed = bytemuck::cast([UNWRITTEN; size_of::<Observation>() / 4]);

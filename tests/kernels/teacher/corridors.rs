@@ -2,9 +2,10 @@
 //! grid the robot's moves keep to.
 
 use super::super::configs::shipped;
-use skilltree::config::plan::{Action, Child, Noise, NoiseKind, Robot as Habits, Skill};
+use skilltree::config::plan::{Action, Child, Noise, SkillPlan};
 use skilltree::env::motion::{DOCKED, PASSED_DOOR};
 use skilltree::env::workgroup::CohortData;
+use skilltree::layout::choices::{NOISE_GAUSSIAN, NOISE_UNIFORM};
 use skilltree::teacher::value_iteration::{Planner, Terms};
 use skilltree::train::observation::{SILENT, floor_only};
 use skilltree::world::{Pose, World, parse};
@@ -51,16 +52,15 @@ fn on_line(x: f64, heading: f64, quarters: u32) -> Pose {
     Pose { x: x as f32, y: y as f32, heading: heading as f32 }
 }
 
-fn docking() -> Skill {
+fn docking() -> SkillPlan {
     let skill = shipped("configs/docking.toml", &[]).arms[0].skills[0].clone();
-    assert_eq!((skill.reward, skill.ends), ([100.0, -10.0, 0.0, 0.0, 0.0], DOCKED));
+    assert_eq!((skill.params.reward, skill.goal), ([100.0, -10.0, 0.0, 0.0, 0.0], DOCKED));
     skill
 }
 
 /// What a planner plans with.
 fn terms(noise: Noise, backward_cost: f32, pitch: f32) -> Terms {
-    let robot = Habits { light_trace: 0.9, door_trace: 0.9, range_decay: 0.9, beside_near: 15.0, beside_far: 30.0 };
-    Terms { noise, robot, discount: DISCOUNT, backward_cost, collision_cost: 0.0, pitch }
+    Terms { noise, beside: (15, 30), discount: DISCOUNT, backward_cost, collision_cost: 0.0, pitch }
 }
 
 /// Place on the line in moves, and heading in steps of 15 degrees.
@@ -108,7 +108,7 @@ fn distances(
 }
 
 /// The actions that a skill chooses among.
-fn actions(skill: &Skill) -> Vec<Action> {
+fn actions(skill: &SkillPlan) -> Vec<Action> {
     let action = |child: &Child| match child {
         Child::Action(action) => *action,
         Child::Skill(_) => panic!("a skill among the children"),
@@ -181,8 +181,8 @@ fn docking_values_are_those_of_the_shortest_paths() {
 #[test]
 fn door_values_are_those_of_the_shortest_paths() {
     let mut skill = docking();
-    skill.reward = [0.0, -10.0, 100.0, 0.0, 0.0];
-    skill.ends = PASSED_DOOR;
+    skill.params.reward = [0.0, -10.0, 100.0, 0.0, 0.0];
+    skill.goal = PASSED_DOOR;
     // Fewer children, in another order, for good measure.
     let children = [Action::Backward, Action::TurnLeft60, Action::TurnLeft15, Action::Forward];
     skill.children = children.map(Child::Action).to_vec();
@@ -204,8 +204,8 @@ fn values_under_noise_are_those_of_the_recursion() {
     let mut skill = docking();
     skill.children = vec![Child::Action(Action::Forward)];
     for (kind, actuator, weights) in [
-        (NoiseKind::Gaussian, 0.5 / 3.0_f64.sqrt(), [1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0]),
-        (NoiseKind::Uniform, 0.5 / 0.6_f64.sqrt(), [5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0]),
+        (NOISE_GAUSSIAN, 0.5 / 3.0_f64.sqrt(), [1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0]),
+        (NOISE_UNIFORM, 0.5 / 0.6_f64.sqrt(), [5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0]),
     ] {
         // Contact at 27 in: between the grid points of 6 in.
         let world = corridor(15.0, 0);
@@ -219,10 +219,10 @@ fn values_under_noise_are_those_of_the_recursion() {
                 let end = x - 6.0 * half_moves as f64;
                 if end < 27.0 { 100.0 } else { 0.9 * exact[place as usize - half_moves] }
             };
-            let value = weights.iter().enumerate().map(|(i, weight)| weight * after(i + 1)).sum();
+            let value = weights.iter().enumerate().map(|(i, weight)| weight * after(i + 1)).sum::<f64>();
             exact.push(value);
             let pose = on_line(x, 180.0, 0);
-            close(planner.value(0, pose), value, || format!("{kind:?} at {x} in"));
+            close(planner.value(0, pose), value, || format!("noise of kind {kind} at {x} in"));
         }
         assert!((exact[0] - 100.0).abs() < 1.0e-9 && exact[29] < 30.0);
     }

@@ -9,8 +9,8 @@ use skilltree::config::plan::Plan;
 use skilltree::env::motion::{BESIDE_LEFT, BESIDE_RIGHT, COLLISION, DOCKED, FORWARD, PASSED_DOOR};
 use skilltree::layout::{Area, ELEMENTARY_STEP_WORDS, LESSON_HEADER_WORDS, NO_CHILD, Robot, Step, TERMINATED};
 use skilltree::teacher::demonstrations::Demonstration;
-use skilltree::train::batch_group::{Group, groups};
-use skilltree::train::observation::{SILENT, Senses, robot_at};
+use skilltree::train::batch_group::{BatchGroup, groups};
+use skilltree::train::observation::{SILENT, SensorValues, robot_at};
 use skilltree::world::Pose;
 
 /// A lesson of a skill over actions.
@@ -22,7 +22,7 @@ fn office_config(skill: &str, extra: &str) -> Plan {
     let office = file("configs/worlds/office.toml");
     let text = format!(
         "title = \"teacher\"\nworld = {office:?}\nseeds = \"0\"\n{extra}\n[evaluate]\nat = []\nepisodes = 1\n\
-         [teacher]\nbank = 100\nepisodes = 1000\n{skill}\n[arm.only]\n"
+         [teacher]\nlessons = 100\neval_episodes = 1000\n{skill}\n[arm.only]\n"
     );
     written(&text, &[])
 }
@@ -53,18 +53,18 @@ const DOOR: &str = r#"
     trials = 10
 "#;
 
-fn only(plan: &Plan) -> Group {
+fn only(plan: &Plan) -> BatchGroup {
     let mut groups = groups(plan).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(groups.len(), 1);
     groups.remove(0)
 }
 
 /// The planner's own tests of the only skill.
-fn bounds(group: &Group) -> &[Demonstration] {
+fn bounds(group: &BatchGroup) -> &[Demonstration] {
     group.bounds[0].as_deref().expect("the first group has the tests")
 }
 
-fn success(group: &Group) -> f64 {
+fn success(group: &BatchGroup) -> f64 {
     let tests = bounds(group);
     assert_eq!(tests.len(), 1000);
     tests.iter().filter(|test| test.achieved()).count() as f64 / 1000.0
@@ -93,7 +93,7 @@ fn check_lesson(words: &[u32], ends: u32, pay: [f32; 3]) {
     assert!(words[used..].iter().all(|word| *word == 0));
 }
 
-fn check_bank(group: &Group, ends: u32, pay: [f32; 3]) {
+fn check_bank(group: &BatchGroup, ends: u32, pay: [f32; 3]) {
     let skill = &group.shared.skills[0];
     assert_eq!((skill.bank_offset, skill.bank_lessons), (0, 100));
     let lessons: Vec<&[u32]> = group.shared.bank.chunks(skill.lesson_stride as usize).collect();
@@ -127,7 +127,7 @@ fn the_planner_passes_doors_in_the_office_too() {
 }
 
 /// Number of the room that holds a pose.
-fn plan_room(group: &Group, pose: Pose) -> u32 {
+fn plan_room(group: &BatchGroup, pose: Pose) -> u32 {
     let plan = &group.shared.floor.plan;
     let inside = |area: &Area| area.x0 <= pose.x && pose.x < area.x1 && area.y0 <= pose.y && pose.y < area.y1;
     let rooms = &plan.room[..plan.rooms as usize];
@@ -135,7 +135,7 @@ fn plan_room(group: &Group, pose: Pose) -> u32 {
 }
 
 /// Events that the readings after an action tell of: the nearest one 30 to 150 degrees to a side is 15 to 30 inches.
-fn following_wall(senses: &Senses, action: u32, events: u32) -> u32 {
+fn following_wall(senses: &SensorValues, action: u32, events: u32) -> u32 {
     let near = |rays: std::ops::RangeInclusive<usize>| {
         let nearest = senses.sonar[rays].iter().min().copied().unwrap_or(0);
         action == FORWARD && events & (COLLISION | DOCKED) == 0 && (15..=30).contains(&nearest)
@@ -155,7 +155,7 @@ fn lessons_without_noise_can_be_driven_again() {
             let plan = &group.shared.floor.plan;
             let lesson = read(&test.lesson);
             let sense = |step: usize| {
-                Senses::of(&Robot { sensed: lesson.records[step].observation, ..bytemuck::Zeroable::zeroed() })
+                SensorValues::of(&Robot { sensed: lesson.records[step].observation, ..bytemuck::Zeroable::zeroed() })
             };
             let mut pose = test.start;
             let room = |pose: Pose| plan_room(&group, pose);
@@ -182,7 +182,7 @@ fn lessons_without_noise_can_be_driven_again() {
         assert!(hits < 100, "{hits} collisions in 200 lessons");
         cpu_backend(2, None).expect("threads").step(&group.shared, &mut robots, 1).expect("the CPU steps");
         for (then, robot) in sensed.iter().zip(&robots) {
-            let now = Senses::of(robot);
+            let now = SensorValues::of(robot);
             assert_eq!((then.sonar, then.light, then.compass), (now.sonar, now.light, robot.heading));
         }
     }
