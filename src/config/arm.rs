@@ -22,7 +22,7 @@ impl ArmReader<'_> {
     /// Reads skills that are not trained; those that are also need a world and an order.
     pub(super) fn reader<'b>(&'b self, tree: &'b Node, taught: u32, robot: HyperParams) -> SkillReader<'b> {
         let learning = tree.get("learning");
-        SkillReader { learning, robot, ground: None, taught, eval_at: self.eval_at, order: &[] }
+        SkillReader { learning, robot, cached: None, taught, eval_at: self.eval_at, order: &[] }
     }
 
     /// Reads an arm at a point from its complete config.
@@ -42,7 +42,7 @@ impl ArmReader<'_> {
         let top = hierarchy::root(root.optional(keys::ROOT.name()).as_ref(), &links)?;
         let order = hierarchy::order(&links, top)?;
         let reader = SkillReader {
-            ground: Some(worlds.ground(world)),
+            cached: Some(worlds.cached(world)),
             order: &order,
             ..self.reader(tree, teacher.lessons, robot)
         };

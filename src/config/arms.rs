@@ -94,7 +94,7 @@ impl Arms<'_> {
         let first = &trees[0].1;
         let skills = skills(first)?;
         let reader = SkillReader {
-            ground: Some(worlds.ground(base[0].world)),
+            cached: Some(worlds.cached(base[0].world)),
             ..self.reader.reader(first, base[0].teacher.lessons, base[0].skills[0].params)
         };
         let trained = |name: &str| base.iter().any(|arm| arm.skills.iter().any(|skill| skill.name == name));

@@ -1,10 +1,10 @@
 //! From what the user typed to a checked, immutable plan.
 //!
-//! [`keys`] is the one table of defaults and ranges. `tree` holds TOML with the place of every value, `set` adds what
-//! the command line changes, `read` takes typed values out and refuses what it does not know, and every complaint
-//! is a [`ConfigError`] that shows the place and a way out. `hierarchy` finds the skills of an arm and their order,
-//! `worlds` the floor plans,
-//! `sweep` the points at which arms are run. [`load()`] puts the layers together.
+//! Every key has one row: [`keys`] has those of this module, [`crate::layout::params`] the numbers that a learner's memory
+//! holds; [`reference`] prints them all. [`load()`] puts the layers together: defaults, the config that a file extends, the
+//! file, `--set`, each arm's own table, the values at a point of the sweep. `hierarchy` finds the skills of an arm and
+//! their order, `worlds` the floor plans, `sweep` the points at which arms are run, `renamed` refuses old names. Every
+//! complaint is a [`ConfigError`] that shows the place and a way out.
 
 mod arm;
 mod arms;

@@ -4,7 +4,7 @@ use super::hierarchy::Link;
 use super::keys;
 use super::plan::{Child, Event, SkillPlan, Threshold};
 use super::unused_keys::UnusedKeys;
-use super::worlds::Ground;
+use super::worlds::CachedWorld;
 use super::{children, inputs, mirror};
 use crate::layout::choices::OPTIMISER_SGD;
 use crate::layout::params::{ALWAYS, MAX_TRIALS};
@@ -21,7 +21,7 @@ pub(super) struct SkillReader<'a> {
     pub(super) learning: Option<&'a Node>,
     /// The arm's floor plan. None for skills that the arm does not train: they may belong in another one, so that
     /// regions, events and inputs are not held against it.
-    pub(super) ground: Option<Ground<'a>>,
+    pub(super) cached: Option<CachedWorld<'a>>,
     /// The numbers that the arm's robots have in common.
     pub(super) robot: HyperParams,
     /// Lessons that the teacher demonstrates.
@@ -35,7 +35,7 @@ pub(super) struct SkillReader<'a> {
 impl SkillReader<'_> {
     /// Reads a skill that is no mirror image.
     pub(super) fn skill(&self, link: &Link<'_>, unused: &mut UnusedKeys) -> Result<SkillPlan, ConfigError> {
-        let (ground, world) = (self.ground, self.ground.map(|ground| ground.world));
+        let (cached, world) = (self.cached, self.cached.map(|cached| cached.world));
         let section = KeyedTable(link.item.table()?);
         let asked = section.required(&keys::SKILL_INPUTS, "[\"sonar\", \"light\", \"bumpers\"]")?;
         let inputs = inputs::read(&asked, world)?;
@@ -43,9 +43,9 @@ impl SkillReader<'_> {
         section.0.optional(keys::SKILL_CHILDREN.name());
         section.0.optional(keys::SKILL_MIRROR.name());
         let applicable = children::applicable(&section.required(&keys::SKILL_APPLICABLE, "{}")?, &link.children)?;
-        let starts = starts(&section.required(&keys::SKILL_STARTS, "\"anywhere\"")?, ground)?;
+        let starts = starts(&section.required(&keys::SKILL_STARTS, "\"anywhere\"")?, cached)?;
         let tests = section.required(&keys::SKILL_EVAL_STARTS, "\"anywhere\"")?;
-        let eval_starts = region(tests.text()?, &|message, hint| tests.error(message, hint), ground)?;
+        let eval_starts = region(tests.text()?, &|message, hint| tests.error(message, hint), cached)?;
         let goal = goal(&section.required(&keys::SKILL_GOAL, "[\"docked\"]")?, world)?;
         let oracle = oracle(&section, link)?;
         let mut params = self.learning(&section, &link.item, unused)?;
@@ -219,12 +219,12 @@ fn goal(item: &Item<'_>, world: Option<&World>) -> Result<u32, ConfigError> {
 }
 
 /// The name of a region in which a trial can start.
-fn region(name: &str, place: &Complain<'_>, ground: Option<Ground<'_>>) -> Result<String, ConfigError> {
-    let Some(ground) = ground else { return Ok(name.to_owned()) };
-    let world = ground.world;
+fn region(name: &str, place: &Complain<'_>, cached: Option<CachedWorld<'_>>) -> Result<String, ConfigError> {
+    let Some(cached) = cached else { return Ok(name.to_owned()) };
+    let world = cached.world;
     let names = world.region_names();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    match ground.region_is_empty(name) {
+    match cached.region_is_empty(name) {
         None => {
             let message = format!("the world `{}` has no region `{name}`", world.name);
             Err(place(message, suggest(name, "regions", &names)))
@@ -238,9 +238,9 @@ fn region(name: &str, place: &Complain<'_>, ground: Option<Ground<'_>>) -> Resul
 }
 
 /// At least one region with its share.
-fn starts(item: &Item<'_>, ground: Option<Ground<'_>>) -> Result<Vec<(String, f32)>, ConfigError> {
+fn starts(item: &Item<'_>, cached: Option<CachedWorld<'_>>) -> Result<Vec<(String, f32)>, ConfigError> {
     if let Value::Text(name) = &item.node.value {
-        return Ok(vec![(region(name, &|message, hint| item.error(message, hint), ground)?, 1.0)]);
+        return Ok(vec![(region(name, &|message, hint| item.error(message, hint), cached)?, 1.0)]);
     }
     if !matches!(item.node.value, Value::Table(_)) {
         let message = format!("`{}` must be a region or a table of shares, not {}", item.name, item.node.kind());
@@ -249,7 +249,7 @@ fn starts(item: &Item<'_>, ground: Option<Ground<'_>>) -> Result<Vec<(String, f3
     let mut starts = Vec::new();
     let mut sum = 0.0;
     for (entry, share) in item.table()?.all() {
-        let name = region(&entry.key, &|message, hint| entry.origin.error(message, hint), ground)?;
+        let name = region(&entry.key, &|message, hint| entry.origin.error(message, hint), cached)?;
         sum += share.double(keys::START_SHARE)?;
         starts.push((name, share.number(keys::START_SHARE)?));
     }

@@ -2,7 +2,7 @@
 
 use super::arms::small_name;
 use super::plan::{Alteration, ArmPlan, Event, Noise};
-use super::worlds::{Ground, Worlds};
+use super::worlds::{CachedWorld, Worlds};
 use super::{keys, robot};
 use crate::toml::document::{Node, SourceSpan};
 use crate::toml::error::ConfigError;
@@ -36,7 +36,7 @@ pub(super) fn read<'a>(
         for arm in arms.clone() {
             let own = world.unwrap_or(arm.world);
             check_rooms(placed(own), placed(arm.world), place)?;
-            check_root(worlds.ground(own), arm, place)?;
+            check_root(worlds.cached(own), arm, place)?;
         }
         alterations.push(Alteration { name: entry.key.clone(), world, noise });
     }
@@ -64,10 +64,10 @@ fn check_rooms(world: &World, usual: &World, place: &SourceSpan) -> Result<(), C
 }
 
 /// Refuses a world in which a root's tests cannot start, or never end as achieved.
-fn check_root(ground: Ground<'_>, arm: &ArmPlan, place: &SourceSpan) -> Result<(), ConfigError> {
+fn check_root(cached: CachedWorld<'_>, arm: &ArmPlan, place: &SourceSpan) -> Result<(), ConfigError> {
     let Some(root) = arm.skills.last() else { return Ok(()) };
-    let world = ground.world;
-    let problem = match ground.region_is_empty(&root.eval_starts) {
+    let world = cached.world;
+    let problem = match cached.region_is_empty(&root.eval_starts) {
         None => Some(format!("the world `{}` has no region `{}`", world.name, root.eval_starts)),
         Some(true) => Some(format!("in the world `{}` the robot fits nowhere in `{}`", world.name, root.eval_starts)),
         Some(false) => None,

@@ -24,41 +24,41 @@ pub(super) struct Worlds<'a> {
     /// The worlds, in the order in which they were named first.
     pub(super) placed: Vec<PlacedWorld>,
     /// What was found out of the regions of each.
-    looked: Vec<Looked>,
+    regions: Vec<RegionCache>,
 }
 
 /// Whether regions of a world are empty, as far as it was asked: looking takes long, and sweeps ask thousands of times.
 #[derive(Debug, Default)]
-struct Looked(RefCell<BTreeMap<String, Option<bool>>>);
+struct RegionCache(RefCell<BTreeMap<String, Option<bool>>>);
 
 /// A floor plan against which skills are held.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Ground<'a> {
+pub(super) struct CachedWorld<'a> {
     /// The floor plan.
     pub(super) world: &'a World,
-    looked: &'a Looked,
+    regions: &'a RegionCache,
 }
 
-impl Ground<'_> {
+impl CachedWorld<'_> {
     /// As [`World::region_is_empty`].
     pub(super) fn region_is_empty(&self, name: &str) -> Option<bool> {
-        if let Some(known) = self.looked.0.borrow().get(name) {
+        if let Some(known) = self.regions.0.borrow().get(name) {
             return *known;
         }
         let empty = self.world.region_is_empty(name);
-        self.looked.0.borrow_mut().insert(name.to_owned(), empty);
+        self.regions.0.borrow_mut().insert(name.to_owned(), empty);
         empty
     }
 }
 
 impl<'a> Worlds<'a> {
     pub(super) fn new(files: &'a dyn Files, config: &'a Path) -> Self {
-        Self { files, config, named: BTreeMap::new(), paths: Vec::new(), placed: Vec::new(), looked: Vec::new() }
+        Self { files, config, named: BTreeMap::new(), paths: Vec::new(), placed: Vec::new(), regions: Vec::new() }
     }
 
     /// The floor plan with this index.
-    pub(super) fn ground(&self, index: usize) -> Ground<'_> {
-        Ground { world: &self.placed[index].world, looked: &self.looked[index] }
+    pub(super) fn cached(&self, index: usize) -> CachedWorld<'_> {
+        CachedWorld { world: &self.placed[index].world, regions: &self.regions[index] }
     }
 
     /// Index of the world whose file `item` names; reads the file if it is new.
@@ -85,7 +85,7 @@ impl<'a> Worlds<'a> {
             item.error(error.message(), hint)
         })?;
         self.placed.push(PlacedWorld { world: world::parse(&text, &path)?, text, file: self.free_name(&path) });
-        self.looked.push(Looked::default());
+        self.regions.push(RegionCache::default());
         self.paths.push(real);
         Ok(self.placed.len() - 1)
     }

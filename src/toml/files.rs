@@ -36,7 +36,8 @@ impl Files for OsFiles {
 /// ```
 /// use skilltree::config::{MemoryFiles, Overrides, load_from};
 ///
-/// let files = MemoryFiles::from_iter([("room.toml", "size = [100, 100]\n"), ("a.toml", "world = 'room.toml'\n")]);
+/// let room = "size = [100, 100]\nrooms = [{ name = 'A', box = [0, 0, 100, 100] }]\n";
+/// let files = MemoryFiles::from_iter([("room.toml", room), ("a.toml", "world = 'room.toml'\n")]);
 /// let error = load_from(&files, "a.toml".as_ref(), &Overrides::default()).expect_err("a config without a skill");
 /// assert!(error.to_string().contains("no skill"));
 /// ```

@@ -164,3 +164,20 @@ fn configs_from_memory_are_those_of_the_disk() {
     let error = load_from(&alone, Path::new("quick.toml"), &Overrides::default()).expect_err("no world");
     assert!(error.message().contains("cannot read the world file: there is no such file"), "{error}");
 }
+
+#[test]
+fn the_command_prints_the_reference_and_the_schemas() {
+    let keys = |arguments: &[&str]| {
+        let program = std::process::Command::new(env!("CARGO_BIN_EXE_skilltree")).arg("keys").args(arguments).output();
+        let output = program.expect("the program runs");
+        let [out, said] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).expect("text"));
+        (output.status.code(), out, said)
+    };
+    assert_eq!(keys(&[]), (Some(0), text(""), String::new()));
+    assert_eq!(keys(&["teacher"]), (Some(0), text("teacher"), String::new()));
+    assert_eq!(keys(&["--json-schema", "config"]).1, format!("{:#}\n", config_schema()));
+    assert_eq!(keys(&["--json-schema", "world"]).1, format!("{:#}\n", world_schema()));
+    let (code, out, said) = keys(&["no such thing"]);
+    assert_eq!((code, out.as_str()), (Some(2), ""));
+    assert!(said.contains("no key matches `no such thing`") && said.contains("hint: "), "{said}");
+}
