@@ -2,98 +2,125 @@
 //! reinforcement, on any GPU or on the CPU, and gets the same bytes on both. It reproduces Long-Ji Lin,
 //! "Hierarchical Learning of Robot Skills by Reinforcement" (1993).
 //!
+//! # Words
+//!
+//! | word | meaning |
+//! |---|---|
+//! | skill | a Q-function over *children*, and what defines its task: inputs, reward, starting region, goal, step limit. In other papers an option |
+//! | child | what a skill chooses among: an action or another skill |
+//! | applicable | a child whose own best Q-value exceeds the threshold set for it |
+//! | persistence | a chosen child is kept to until its goal is achieved or another child becomes applicable |
+//! | decision | a step at which a skill over skills may choose again |
+//! | trial, step | an episode of training or of a test; one primitive action in it |
+//! | lesson | an episode in the replay memory, taught or experienced |
+//! | teacher | a planner that demonstrates, and that stands in every report as the bound |
+//! | learner | one independent run: robot, nets, lessons, random stream, hyper-parameters |
+//! | arm | one experimental condition; at each point of a sweep it is an arm of its own |
+//! | cohort | the learners that fit a device together |
+//! | twin | the Rust function that says the same as a shader's, statement for statement |
+//!
 //! # One learner is one workgroup of 32 lanes
 //!
-//! A learner is one independent run: its robot, its nets, its lessons, its random stream, its numbers. On a
-//! GPU a workgroup of 32 invocations owns it; on the CPU one thread does, and the lanes are the elements of
-//! a 32-wide array. Lanes are sonar rays, then wall segments, then hidden units. Learners never wait for one
-//! another and never share a sum, so learner k alone leaves the same bytes as learner k among thousands.
+//! On a GPU a workgroup of 32 invocations owns a learner; on the CPU one thread does, and the lanes are the elements of
+//! arrays. Lanes are sonar rays, then wall segments, then hidden units. Learners never wait for one another and never
+//! share a sum, so learner k alone leaves the same bytes as learner k among thousands.
 //!
-//! A learner is a state machine whose whole state is in its [`learner::layout::LearnerState`]. Kernel [`advance`]
-//! moves it on by at most *n* iterations (one trial step, or one replayed transition), so a dispatch can be as
-//! short as a watchdog wants it. Kernel [`mod@evaluate`] runs greedy tests with the nets read-only, and
-//! kernel [`mod@step`] lets a robot carry out given actions.
+//! A learner is a state machine whose whole state is in its [`layout::LearnerState`]. Kernel [`kernels::train`] moves it
+//! on by at most *n* iterations (a trial step, or a replayed transition), so that a dispatch can be as short as a
+//! watchdog wants it. Kernel [`kernels::evaluate`] runs greedy tests with the nets read-only, and kernel
+//! [`mod@kernels::step`] lets robots carry out given actions.
 //!
-//! The host keeps two dispatches in flight ([`backend::gpu::flight`]) and looks at the states once in several. While a
-//! learner replays, kernel [`advance`] holds the weights of the skill in training in its workgroup's memory where they
-//! fit ([`backend::gpu::held`]); the CPU's twin works on a copy that stays in the cache. What either is worth on a graphics
-//! card has not been measured.
+//! # Three forms, one truth
+//!
+//! - The **plain twin** of `shaders/PATH.wgsl` stands at `src/PATH.rs` and reads as the shader does. The shaders'
+//!   module-scope variables are the fields of one struct, [`env::workgroup::Workgroup`], and their functions its methods.
+//!   The plain twins are a backend of their own, `--backend reference`. A test compares names, comments and statements.
+//! - The **shader**: both languages share one memory layout, [`layout`], from which the constants and structs of WGSL are
+//!   emitted.
+//! - The **tuned forms** of the five functions that take the time ([`env::workgroup::HotForms`]: draws, observation,
+//!   motion, forward, backward) and of kernel `step` stand in [`backend::cpu::lanes`], are compiled for each instruction
+//!   set, and may be as clever as they like. All else runs the plain twins there too.
+//!
+//! Results are built from IEEE f32 `+ - *`, comparisons and integers alone ([`math`]), random numbers are counters
+//! ([`math::rng`]), and on Vulkan the SPIR-V is decorated so that no compiler fuses or re-associates. Hence all forms
+//! agree to the byte, and tests compare bytes; [`backend::parity`] names the first word that differs, and `skilltree
+//! devices --parity` asks any adapter.
 //!
 //! # A skill tree is data
 //!
-//! A skill is a Q-function over children, and a child is an action or a skill with a lower number: nothing else
-//! tells the levels apart. One step of a robot ([`skill::act`]) looks, asks the skills that some applicability
-//! depends on, children first ([`skill::act::watch`]), lets the root choose among what applicability and persistence
-//! allow ([`skill::persist`]), and goes down to an action ([`skill::act::descend`]). What an action earned is settled
-//! by the next look, for some rewards depend on what is seen. A recorded step keeps what was allowed and whether the
-//! choice was free, so that [`lesson::replay`] can learn from every step or from decisions alone. The same functions
-//! serve training and tests.
+//! One step of a robot observes and settles what the last action earned ([`mod@env::step`]), asks the skills that some
+//! applicability depends on, children first, lets the root choose among what applicability and persistence allow
+//! ([`policy::persistence`]), and goes down to an action ([`policy::hierarchy`]). A recorded [`layout::Step`] keeps what
+//! was allowed and whether the choice was free, so that [`learn::td_lambda`] can learn from every step or from decisions
+//! alone. The same functions serve training and tests.
 //!
-//! Skills are learned in order, children before parents. Arms of an experiment that differ in their root alone share
-//! the rest: it is trained once for each seed, and each arm goes on from a copy ([`experiment::train`]), with the bytes
-//! of a learner that trained alone.
-//!
-//! # A sweep is more arms
-//!
-//! A sweep lays values over the config of each arm: every arm at every point is an arm of its own in the plan, with its
-//! number in the tables' column `point` ([`record::sweep`]). Nothing after the config stage knows more of it. Learners of
-//! several arms and points train in one cohort where their skills differ in numbers alone ([`experiment::cohorts`]).
+//! Skills are learned in order, children before parents. Arms that differ in their root alone share the rest: it is
+//! trained once for each seed, and each arm goes on from a copy ([`train::pretraining`]), with the bytes of a learner that
+//! trained alone.
 //!
 //! # Runs that are stopped
 //!
 //! Cohorts train one after another, and each is committed as *parts* before the next begins. In between, the learners'
-//! memory is saved in a *checkpoint* every minute and when a signal asks for it ([`experiment::checkpoint`]): as a
-//! learner's whole position is in its memory, going on is training as ever, without the tests that it has taken. Parts
-//! and checkpoints belong to one version of the program and one plan. At the end the tables and nets are written part
-//! by part ([`experiment::files`]), so that the memory taken does not grow with the number of learners.
+//! memory is saved in a *checkpoint* every minute and when a signal asks for it ([`train::checkpoint`]): as a learner's
+//! whole position is in its memory, going on is training as ever, without the tests that it has taken. Parts and
+//! checkpoints belong to one version of the program and one plan. At the end the tables and nets are written part by part
+//! ([`train::write_results`]), so that the memory taken does not grow with the number of learners. A learner in which a
+//! number stops being finite is frozen by the kernel; the host finds the transition ([`train::divergence`]), lists it in
+//! `failures.json`, and leaves the learner in every table.
 //!
-//! A learner in which a number stops being finite is frozen by the kernel. The host finds the transition from what the
-//! learner's memory holds ([`mod@experiment::failure`]), lists it in `failures.json`, and leaves it in every table.
+//! # Rooms, in the order in which they may use one another
 //!
-//! # Twins
-//!
-//! Every `shaders/PATH.wgsl` has its CPU twin at `src/PATH.rs`: same functions, same statements in the same
-//! order, same comments on why. Both languages share one memory layout, [`learner::layout`], from which the
-//! WGSL constants and structs are emitted. Results are built from IEEE f32 `+ - *`, comparisons and integers
-//! alone ([`math`]), random numbers are counters ([`math::rng`]), and on Vulkan the SPIR-V is decorated so
-//! that no compiler fuses or re-associates. Hence CPU and GPU agree to the byte, and tests compare bytes;
-//! [`backend::parity`] names the first word that differs, and `skilltree devices --parity` asks any adapter.
-//!
-//! A twin may go about it in the CPU's way as long as no sum changes its order: nets or robots side by side, a list of what
-//! is not 0 where a workgroup looks at everything, numbers by value so that the compiler keeps them in lanes. Nets of up to 16
-//! hidden units take half of the lanes in both languages ([`qnet::forward::lanes_of`]).
-//!
-//! # Modules, in the order in which they may use one another
-//!
-//! | stage | modules |
+//! | room | what happens there |
 //! |---|---|
-//! | what the user wrote, checked | [`config`] |
-//! | the floor plan | [`world`] |
-//! | kernels and their memory | [`math`], [`robot`] (simulate), [`qnet`] (approximate), [`skill`] (decide), [`lesson`] (learn), [`mod@advance`], [`mod@evaluate`], [`mod@step`], [`learner`] |
-//! | who demonstrates | [`teacher`] |
-//! | who executes the kernels | [`backend`] |
-//! | run folders | [`record`] |
-//! | arms x points x seeds -> cohorts -> results | [`experiment`] |
-//! | statistics, figures, the page | [`report`], which reads run folders only |
-//! | rates beside the machine's limits | [`mod@bench`] |
-//! | commands | [`cli`] |
+//! | [`layout`] | ground floor: every word that a kernel touches, written once; a row for each action, event, sensor and hyper-parameter |
+//! | [`mod@toml`] | TOML with the place of every value |
+//! | [`math`] | arithmetic that gives the same bits everywhere |
+//! | [`world`] | floor plan -> segments, regions, lookup tables |
+//! | [`config`] | what the user wrote -> a checked plan |
+//! | [`env`] | SIMULATE: body, sensors, events |
+//! | [`qnet`] | APPROXIMATE: nets and optimisers |
+//! | [`policy`] | DECIDE: features, applicability, persistence, choice |
+//! | [`learn`] | LEARN: lessons, TD(lambda) |
+//! | [`kernels`] | what is dispatched |
+//! | [`backend`] | who executes: reference, cpu, gpu |
+//! | [`teacher`] | value iteration, demonstrations |
+//! | [`run_folder`] | what a run leaves on disk |
+//! | [`train`] | arms x points x seeds -> cohorts -> results |
+//! | `report` | statistics, figures, the page; reads run folders only |
+//! | [`mod@bench`] | rates, checked first |
+//! | [`cli`] | commands |
 //!
-//! Tests enforce the twins and the direction.
+//! A test computes this order from the imports and knows no exceptions; within a room no circle of files is allowed.
+//!
+//! # How to add
+//!
+//! - **a sensor** that a net is given: a row in `layout/sensors.rs`; a branch in the pair `policy/features` (`encode` or
+//!   `scalar_feature`). What is remembered between steps also takes a field of `layout::Agent` or `layout::Step` and a line
+//!   in the pair `env/memory`.
+//! - **an action**: a row in `layout/actions.rs`; a turn needs no more. A move other than forward and backward takes its
+//!   case in the pair `env/motion` and in `backend/cpu/lanes/contact.rs`.
+//! - **a reward event**: a row in `layout/events.rs`; where it is found, in the pair `env/events` and its call in `env/step`.
+//! - **a hyper-parameter**: a row in `layout/params.rs`, which makes the key, its reader, its reference page, the learner's
+//!   record and the field in WGSL; its use in a kernel pair.
+//! - **an optimiser**: a word in `layout/choices.rs`, a pair in `qnet/optimiser/`, its call in the pair `qnet/backward`, a
+//!   branch in `backend/cpu/lanes/optimiser.rs`.
+//! - **a statistic**: a function in `report/statistics/`, a field in `report/page.rs`, a column in its template.
 //!
 //! # Where this differs from the first design, and why
 //!
-//! - The teacher has its own module behind the kernels instead of a place in `world`: it moves the robot
-//!   with the kernels' twins, so that it plans for exactly what happens.
-//! - A learner waits before a test until the host has run it: [`mod@evaluate`] takes a workgroup per learner
-//!   *and* test trial, which fills a device far better than one learner's trials in sequence would.
-//! - All learners of a cohort are in one world: its floor plan lies in a uniform buffer, where one load
-//!   serves all lanes.
-//! - `record` stands before `experiment`, which commits cohorts through it.
-//! - `skill` stands behind `qnet`: a skill over skills asks nets before it chooses.
-//! - Memories of a trial (traces of light and doors, means of ranges) belong to the robot and not to a skill: all
-//!   skills of a tree may take them as inputs.
-//! - Thresholds are learned on the host, between two skills, from nets and lessons that the device hands over once:
-//!   one implementation serves every backend.
+//! - The teacher stands behind the backends: it moves the robot with the CPU's tuned forms, so that it plans for exactly
+//!   what happens, and quickly.
+//! - The twins are methods of one struct that is not generic: the hot functions are a table of pointers. So the state
+//!   machine is compiled once, and only the tuned forms for each instruction set.
+//! - A learner waits before a test until the host has run it: kernel `evaluate` takes a workgroup per learner *and* test
+//!   trial, which fills a device far better than one learner's trials in sequence would.
+//! - All learners of a cohort are in one world: its floor plan lies in a uniform buffer, where one load serves all lanes.
+//! - `env/segments.rs` stands among the kernels, though no shader has it: lists of segments are data of the cohort, which
+//!   the CPU wants as arrays.
+//! - Memories of a trial (traces of light and doors, means of ranges) belong to the robot and not to a skill: all skills of
+//!   a tree may take them as inputs.
+//! - Thresholds are learned on the host, between two skills, from nets and lessons that the device hands over once: one
+//!   implementation serves every backend.
 //!
 //! # From Rust
 //!

@@ -2,7 +2,7 @@
 //!
 //! No more than the largest skill that fits, as memory that a workgroup takes keeps others from running beside it.
 
-use super::device::Device;
+use super::device::{Device, is_software};
 use crate::backend::Cohort;
 use crate::layout::{HyperParams, SkillShape};
 use crate::qnet::forward::lanes_used;
@@ -10,6 +10,9 @@ use naga::{AddressSpace, Module};
 
 /// Name of the override.
 pub const HELD: &str = "HELD_WORDS";
+/// Workgroups that must stay side by side on a multiprocessor. An H200 shares the limit of one workgroup among all that are
+/// resident: weights that take it all leave one warp there, which replays at 0.4 times the speed of weights not held.
+const RESIDENT: u32 = 8;
 /// Bytes that no variable's alignment exceeds.
 const ALIGNMENT: u32 = 16;
 
@@ -45,7 +48,8 @@ pub fn holders(cohort: &Cohort, held: u32) -> u32 {
 pub fn held(device: &Device, module: &Module, wanted: &[u32]) -> Result<u32, String> {
     // Where the driver takes no SPIR-V, one invocation zeroes the memory, and nobody has seen how long that takes.
     let limit = if device.passthrough { device.device.limits().max_compute_workgroup_storage_size } else { 0 };
-    Ok(fitting(limit, shared_bytes(module)?, wanted))
+    let resident = if is_software(&device.info) { 1 } else { RESIDENT };
+    Ok(fitting(limit / resident, shared_bytes(module)?, wanted))
 }
 
 /// The most words of those wanted that `limit` bytes hold beside `taken`, at least one.
