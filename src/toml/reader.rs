@@ -209,7 +209,10 @@ impl<'a> TableReader<'a> {
 
     /// The value under a key that may be missing.
     pub(crate) fn optional(&self, key: &str) -> Option<Item<'a>> {
-        self.asked.borrow_mut().push(key.to_owned());
+        let mut asked = self.asked.borrow_mut();
+        if !asked.iter().any(|known| known == key) {
+            asked.push(key.to_owned());
+        }
         self.node.get(key).map(|node| Item { name: self.name_of(key), node })
     }
 

@@ -111,7 +111,9 @@ fn every_default_is_read_and_in_range() {
     assert_eq!(plan.arms.len(), 1);
     assert_eq!(plan.arms[0].name, "base");
     // The defaults are the taught Adam arm of docking.
-    assert_eq!(plan.arms[0].skills[0].params, docking(&[]).arms[0].skills[0].params);
+    let (own, taught) = (plan.arms[0].skills[0].params, docking(&[]).arms[0].skills[0].params);
+    assert_eq!(own, HyperParams { lessons: own.lessons, reward: own.reward, ..taught });
+    assert_eq!((own.lessons, own.reward), (0, [1.0, 0.0, 0.0, 0.0, 0.0]));
     assert_eq!(plan.arms[0].noise, docking(&[]).arms[0].noise);
     assert_eq!((plan.arms[0].teacher, plan.evaluate), (docking(&[]).arms[0].teacher, docking(&[]).evaluate));
     for key in keys::all() {
@@ -283,7 +285,7 @@ learning.learning_rate = 0.5
         ("extends = 'two'", "extends = 'six'", "extends = 'six'", "`six` is not one of the arms"),
         ("extends = 'two'", "extends = 'four'", "extends = ", "in a circle"),
         ("extends = 'two'", "extends = 3", "extends = 3", "must be a string"),
-        ("title", "extends = 'two'\ntitle", "extends = 'two'", "unknown key `extends`"),
+        ("title", "extends = 'two'\ntitle", "extends = 'two'", "cannot read the config file"),
     ] {
         let error = attempt(&text.replacen(from, to, 1), WORLD).0.err().unwrap_or_else(|| panic!("accepted {to}"));
         println!("{error}\n");

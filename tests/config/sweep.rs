@@ -98,7 +98,7 @@ fn any_key_of_an_arm_may_be_an_axis() {
         ("skill.dock.starts", &["'anywhere'", "'light-area'"]),
         ("skill.dock.eval_starts", &["anywhere", "light-area"]),
         ("skill.dock.lessons", &["0", "5"]),
-        ("skill.recharge.policy", &["learned", "ordered"]),
+        ("skill.recharge.policy", &["learned", "fixed-priority"]),
         ("skill.recharge.persistence", &["true", "false", "training"]),
         ("skill.pass-door.learning.gamma", &["0.5", "0.9"]),
         ("learning.optimiser", &["adam"]),
@@ -316,7 +316,7 @@ fn mistakes_are_named() {
         (&["sweep.skill.recharge.applicable.dcok=[0.1]"][..], "no arm has", "did you mean `dock`?"),
         // Every skill of these arms has a rate of its own, or no trials.
         (
-            &["sweep.learning.learning_rate=[0.1, 0.2]", "skill.dock.learning={rate=0.1}"],
+            &["sweep.learning.learning_rate=[0.1, 0.2]", "skill.dock.learning={learning_rate=0.1}"],
             "changes nothing in any arm",
             "skill.dock",
         ),

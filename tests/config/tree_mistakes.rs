@@ -46,7 +46,7 @@ fn trees_and_worlds_that_cannot_be_are_refused() {
         ("skill.recharge.child_timeout=256", "out of range", "between 0 and 255"),
         ("skill.recharge.eval_at=[3, 2]", "`skill.recharge.eval_at[1]` does not rise", "ascending"),
         ("skill.left.eval_at=5", "must be a list", "[ ..., ... ]"),
-        ("skill.recharge.oracle=true", "`recharge` chooses among skills and cannot be planned", "actions only"),
+        ("skill.recharge.oracle=true", "`recharge` chooses among skills and cannot be an oracle", "actions only"),
         ("skill.recharge.oracle=yes", "must be true or false", "without quotes"),
         ("skill.recharge.lessons=1", "`recharge` cannot have lessons: nobody demonstrates skills", "lessons = 0"),
         ("skill.left.mirror=rigt", "`rigt` is not one of the skills", "did you mean `right`"),
@@ -59,7 +59,7 @@ fn trees_and_worlds_that_cannot_be_are_refused() {
         ),
         ("skill.dock.mirror=left", "`dock` cannot be the mirror image of `left`: it is a mirror image", "of its own"),
         ("skill.left.trails=3", "unknown key `skill.left.trails`", "did you mean `trials`"),
-        ("skill.left.learning.rte=3", "unknown key `skill.left.learning.rte`", "did you mean `rate`"),
+        ("skill.left.learning.repays=3", "unknown key `skill.left.learning.repays`", "did you mean `replays`"),
         ("skill.spare.trails=3", "unknown key `skill.spare.trails`", "did you mean `trials`"),
         ("arm.full.skill.spare.eval_starts=3", "`skill.spare.eval_starts` must be a string", "quotes"),
         ("skill.spare.eval_starts=attic", "has no region `attic`", "`anywhere`"),
@@ -199,7 +199,7 @@ fn thresholds_that_nothing_teaches_and_mirrors_that_show_something_else_are_refu
     let cases: [(Edits<'_>, &str, &str, &str); 6] = [
         (&[("goal = ['beside-right', 'passed-door']", "goal = []")], learned, "`right` has no goal", "a number"),
         (&[("trials = 66", "trials = 0")], learned, "`right` has no trials", "a number"),
-        (&[("trials = 66", "oracle = true")], learned, "`right` is planned", "a number"),
+        (&[("trials = 66", "oracle = true")], learned, "`right` is an oracle", "a number"),
         (
             &[("applicable = { right =", "applicable = { left ="), ("['dock', 'right']", "['dock', 'left']")],
             learned,

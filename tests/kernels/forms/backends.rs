@@ -64,7 +64,7 @@ static FAULTY: [HostForms; 6] = [
         HotForms {
             move_body: |group, x, y, heading, action, slip| {
                 let moved = group.move_body(x, y, heading, action, slip);
-                Moved { x: beside(moved.x), ..moved }
+                Moved { heading: beside(moved.heading), ..moved }
             },
             ..PLAIN
         },

@@ -87,7 +87,7 @@ impl Look {
 #[test]
 fn observations_are_those_of_the_plain_form() {
     let faulty = HotForms {
-        observe: |group, x, y, heading, bumpers, noise| group.observe(beside(x), y, heading, bumpers, noise),
+        observe: |group, x, y, heading, bumpers, noise| group.observe(x, y, beside(heading), bumpers, noise),
         ..PLAIN
     };
     for place in places() {
@@ -118,7 +118,8 @@ fn moves_are_those_of_the_plain_form() {
             .map(|_| {
                 let action = [0, 1, 2, 3, 4, 4, 4, 5, 5, NO_ACTION][(next() * 10.0) as usize];
                 // Some want to go farther than the lists of a cell reach, and some not at all.
-                Move { pose: place.pose(&mut next, 0.0), action, slip: (next() * 2.2 - 0.2) as f32 }
+                let pose = if next() < 0.3 { place.pose_by_charger(&mut next) } else { place.pose(&mut next, 0.0) };
+                Move { pose, action, slip: (next() * 2.2 - 0.2) as f32 }
             })
             .collect();
         let moved = |forms: &HotForms, Move { pose, action, slip }: &Move| {

@@ -64,7 +64,7 @@ fn events_beside_walls_are_those_of_the_geometry() {
         charger: Some([0.0, 50.0, 24.0, 74.0]),
         ..Written::room(220.0, 160.0)
     };
-    let band = ["robot.beside={ near = 18.0, far = 25.0 }", SILENT];
+    let band = ["robot.beside={ near = 18, far = 25 }", SILENT];
     for (set, near, far) in [(&band[1..], 15.0, 30.0), (&band[..], 18.0, 25.0)] {
         let learner = Learner::new(plan_with(TREE, set));
         let params = &learner.params[0];

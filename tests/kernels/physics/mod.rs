@@ -91,6 +91,18 @@ impl Place {
             }
         }
     }
+
+    /// A random pose at most 30 in from the charger.
+    pub(super) fn pose_by_charger(&self, next: &mut impl FnMut() -> f64) -> Pose {
+        let [left, low, right, high] = self.written.charger.expect("a charger");
+        loop {
+            let mut between = |from: f64, to: f64| (from - 30.0 + next() * (to - from + 60.0)).max(0.0) as f32;
+            let (x, y) = (between(left, right), between(low, high));
+            if self.field.free([f64::from(x), f64::from(y)], BODY) {
+                return Pose { x, y, heading: (next() * 359.99) as f32 };
+            }
+        }
+    }
 }
 
 fn offices() -> Vec<Place> {
@@ -154,6 +166,7 @@ pub(super) fn places() -> Vec<Place> {
     places.extend(slanted());
     places
 }
+
 /// Robots after some steps, which both backends carry out.
 fn stepped(shared: &CohortData, robots: &[Robot], steps: u32) -> Vec<Robot> {
     let [plain, tuned] = [reference_backend(2, None), cpu_backend(2, None)].map(|backend| {
