@@ -5,6 +5,7 @@ mod bench;
 mod console;
 mod devices;
 mod error;
+mod exit_codes;
 mod keys;
 mod parity;
 mod preview;
@@ -18,14 +19,7 @@ pub use console::tell;
 pub use error::CliError;
 
 use clap::{Parser, Subcommand};
-
-/// The last line of every help text.
-macro_rules! exit_codes {
-    () => {
-        "Exit codes: 0 done; 2 wrong usage or config; 75 give the same command again; 1 anything else."
-    };
-}
-use exit_codes;
+use exit_codes::exit_codes;
 
 /// Trains thousands of small robots at once, each learning its own tree of skills by reinforcement, with
 /// the same bytes on any exact GPU and on the CPU.

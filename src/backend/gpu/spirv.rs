@@ -49,14 +49,14 @@ pub fn check(wgsl: &str) -> Result<Checked, String> {
 }
 
 /// Values of a kernel's overrides, by name; those not named keep what the text says.
-pub type Overrides = naga::back::PipelineConstants;
+pub type OverrideValues = naga::back::PipelineConstants;
 
 /// SPIR-V of a checked kernel: indices bounded, workgroup memory zeroed but for arrays whose length is an override,
 /// every float result decorated.
 ///
 /// # Errors
 /// Where naga cannot express the module.
-pub fn compile(checked: &Checked, kernel: &Kernel, overrides: &Overrides) -> Result<Vec<u32>, String> {
+pub fn compile(checked: &Checked, kernel: &Kernel, overrides: &OverrideValues) -> Result<Vec<u32>, String> {
     let (module, info) =
         naga::back::pipeline_constants::process_overrides(&checked.module, &checked.info, None, overrides)
             .map_err(|error| error.to_string())?;
@@ -163,7 +163,7 @@ mod tests {
     fn both(kernel: &Kernel) -> (Vec<u32>, Vec<u32>) {
         let checked = check(&kernel.wgsl()).expect(kernel.name);
         let held = (kernel.name == TRAIN.name).then(|| ("HELD_WORDS".to_owned(), f64::from(LENGTH)));
-        let overrides: Overrides = held.into_iter().collect();
+        let overrides: OverrideValues = held.into_iter().collect();
         let (module, info) =
             naga::back::pipeline_constants::process_overrides(&checked.module, &checked.info, None, &overrides)
                 .expect(kernel.name);
