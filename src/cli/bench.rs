@@ -1,9 +1,7 @@
 //! `skilltree bench`: how fast this machine is.
 
 use super::console::{print, tell};
-use super::error::CliError;
-use super::exit_codes::exit_codes;
-
+use super::{CliError, exit_codes};
 use crate::bench::executor::ExecutorSet;
 use crate::bench::export::{self, export};
 use crate::bench::measure::{BenchOptions, bench as run_bench};

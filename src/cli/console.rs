@@ -1,6 +1,6 @@
 //! Results go to standard output, everything else to standard error; neither ever makes the program panic.
 
-use super::error::CliError;
+use super::CliError;
 use std::io::{ErrorKind, Write, stderr, stdout};
 
 /// Prints results. A reader that has seen enough, such as `head`, is no error.

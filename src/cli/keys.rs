@@ -1,9 +1,7 @@
 //! `skilltree keys`: the reference of every key.
 
 use super::console::print;
-use super::error::CliError;
-use super::exit_codes::exit_codes;
-
+use super::{CliError, exit_codes};
 use crate::config::reference;
 use clap::ValueEnum;
 

@@ -5,7 +5,6 @@ mod bench;
 mod console;
 mod devices;
 mod error;
-mod exit_codes;
 mod keys;
 mod parity;
 mod preview;
@@ -19,7 +18,14 @@ pub use console::tell;
 pub use error::CliError;
 
 use clap::{Parser, Subcommand};
-use exit_codes::exit_codes;
+
+/// The last line of every help text.
+macro_rules! exit_codes {
+    () => {
+        "Exit codes: 0 done; 2 wrong usage or config; 75 give the same command again; 1 anything else."
+    };
+}
+use exit_codes;
 
 /// Trains thousands of small robots at once, each learning its own tree of skills by reinforcement, with
 /// the same bytes on any exact GPU and on the CPU.

@@ -2,9 +2,7 @@
 
 #[cfg(feature = "report")]
 use super::console::print;
-use super::error::CliError;
-use super::exit_codes::exit_codes;
-
+use super::{CliError, exit_codes};
 use std::path::{Path, PathBuf};
 
 /// Draws the figures and writes the self-contained HTML page of complete runs.

@@ -2,11 +2,9 @@
 
 use super::backend::BackendArguments;
 use super::console::{print, tell};
-use super::error::CliError;
-use super::exit_codes::exit_codes;
 use super::progress::RunProgress;
 use super::signals::Signals;
-use super::{preview, report};
+use super::{CliError, exit_codes, preview, report};
 use crate::config::Overrides;
 use crate::experiment::Experiment;
 use crate::run_folder::file_system::{Disk, FileSystem};

@@ -5,5 +5,4 @@
 //! the robot with the same twins as the kernels, so what it plans for is what happens.
 
 pub mod demonstrations;
-mod interpolation;
 pub mod value_iteration;

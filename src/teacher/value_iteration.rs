@@ -3,7 +3,6 @@
 //! The grid is 5 in x 5 in x 15 degrees. Actuator noise enters by a three-point quadrature; between grid
 //! poses values are interpolated, over the poses that a robot can take.
 
-use super::interpolation::{Between, Blend, HEADINGS};
 use crate::backend::cpu::lanes::contact::body_after;
 use crate::backend::cpu::lanes::draws::place_of;
 use crate::backend::cpu::lanes::sonar::{ranges, rays};
@@ -22,6 +21,8 @@ use rayon::prelude::*;
 
 /// Distance of grid points, inches. Ours; tests plan with others, at which moves end on grid points.
 pub const PITCH: f32 = 5.0;
+/// Headings of the grid.
+const HEADINGS: usize = 24;
 /// Degrees between them.
 const HEADING_STEP: f32 = 15.0;
 /// Sweeps stop when no value changes by more than this share of the largest reward.
@@ -340,6 +341,37 @@ impl Planner {
             .filter(|(_, share)| *share > 0.0)
             .map(|(point, share)| share * between.of(&values[point * HEADINGS..][..HEADINGS]))
             .sum()
+    }
+}
+
+/// Grid points that an outcome blends, their shares, and its reward.
+#[derive(Debug, Clone, Copy)]
+struct Blend {
+    points: [u32; 4],
+    shares: [f32; 4],
+    reward: f32,
+}
+
+/// A place between two of a grid point's headings.
+#[derive(Debug, Clone, Copy)]
+struct Between {
+    first: usize,
+    second: usize,
+    /// Share of the second.
+    part: f32,
+}
+
+impl Between {
+    /// `turn` counts headings and may lie beyond them.
+    fn headings(turn: f32) -> Self {
+        let low = turn.floor();
+        let first = (low as i32).rem_euclid(HEADINGS as i32) as usize;
+        Self { first, second: (first + 1) % HEADINGS, part: turn - low }
+    }
+
+    /// The blend of the values of a point's headings.
+    fn of(self, values: &[f32]) -> f32 {
+        values[self.first] * (1.0 - self.part) + values[self.second] * self.part
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::axis::{PlotAxis, range_with_zero};
 use super::color::{INK, palette};
-use super::plot::{END_LABEL, Figure, LegendEntry, Swatch};
+use super::plot::{Figure, LegendEntry, Swatch};
 use super::svg::{Stroke, text_width};
 use crate::report::statistics::Estimate;
 
@@ -10,6 +10,8 @@ use crate::report::statistics::Estimate;
 const PLANNER: &str = "planner (bound)";
 /// Markers along a step curve.
 const STEP_MARKERS: usize = 3;
+/// Size of labels at the ends of curves, the room before them, and the widest that is left to them.
+pub(super) const END_LABEL: f64 = 13.0;
 const BEFORE_LABEL: f64 = 44.0;
 const LABEL_WIDTH: (f64, f64) = (60.0, 300.0);
 

@@ -4,9 +4,6 @@ use super::axis::PlotAxis;
 use super::color::{Color, ColorScale, palette};
 use super::svg::{Stroke, SvgWriter, TextAnchor};
 
-/// Size of labels at the ends of curves, the room before them, and the widest that is left to them.
-pub(super) const END_LABEL: f64 = 13.0;
-
 /// Top of every plot.
 pub(super) const TOP: f64 = 64.0;
 

@@ -1,7 +1,8 @@
 //! A figure as an SVG document.
 
 use super::color::{ColorScale, GREY, INK, PALE, palette};
-use super::plot::{END_LABEL, Figure, LegendEntry, Swatch, TOP, marker};
+use super::curves::END_LABEL;
+use super::plot::{Figure, LegendEntry, Swatch, TOP, marker};
 use super::svg::{Stroke, SvgWriter, TextAnchor, text_width};
 
 /// Left end of headings and notes.
