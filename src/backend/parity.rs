@@ -40,14 +40,14 @@ impl fmt::Display for Difference {
 }
 
 /// What a word holds, and whether that is an f32.
-type WordPlace = (String, bool);
+type WordField = (String, bool);
 
 /// The first differing word of two equally long slices, described by `place`.
 fn first(
     (kernel, learner): (&'static str, usize),
     (left, right): (&[u32], &[u32]),
     failed: bool,
-    place: impl Fn(usize) -> WordPlace,
+    place: impl Fn(usize) -> WordField,
 ) -> Option<Difference> {
     left.iter().zip(right).enumerate().find_map(|(word, (&left, &right))| {
         let wild = |bits| !failed && !f32::from_bits(bits).is_finite();
@@ -68,7 +68,7 @@ pub(crate) fn sizes(kernel: &'static str, learner: usize, what: &str, left: usiz
 }
 
 /// Field of a shared struct that holds its word `word`.
-fn field_of(layout: &str, word: usize) -> WordPlace {
+fn field_of(layout: &str, word: usize) -> WordField {
     let fields = layout_of(layout).map_or(&[][..], |layout| layout.fields);
     let Some((name, offset, wgsl)) = fields.iter().rfind(|(_, offset, _)| *offset <= 4 * word) else {
         return (format!("word {word}"), false);
@@ -85,7 +85,7 @@ fn field_of(layout: &str, word: usize) -> WordPlace {
 }
 
 /// Word `word` of a learner's nets. A mirrored skill has none of its own.
-fn nets_word(skills: &[SkillShape], word: usize) -> WordPlace {
+fn nets_word(skills: &[SkillShape], word: usize) -> WordField {
     let mut owners = skills.iter().enumerate().filter(|(_, plan)| plan.mirrored == 0);
     let Some((skill, plan)) = owners.rfind(|(_, plan)| plan.nets_offset as usize <= word) else {
         return (format!("nets word {word}"), true);
@@ -118,7 +118,7 @@ fn nets_word(skills: &[SkillShape], word: usize) -> WordPlace {
 }
 
 /// Word `word` of a learner's lessons.
-fn lessons_word(skills: &[SkillShape], word: usize) -> WordPlace {
+fn lessons_word(skills: &[SkillShape], word: usize) -> WordField {
     let Some((skill, plan)) = skills.iter().enumerate().rfind(|(_, plan)| plan.memory_offset as usize <= word) else {
         return (format!("lessons word {word}"), false);
     };
@@ -137,7 +137,7 @@ fn lessons_word(skills: &[SkillShape], word: usize) -> WordPlace {
 }
 
 /// Word `word` of a learner's trial table.
-fn rows_word(word: usize) -> WordPlace {
+fn rows_word(word: usize) -> WordField {
     let words = size_of::<TrialRecord>() / 4;
     let (column, number) = field_of("TrialRecord", word % words);
     (format!("rows word {word} (row {}, {column})", word / words), number)
@@ -162,7 +162,7 @@ pub fn advance(left: &Cohort, right: &Cohort) -> Option<Difference> {
         let (nets, lessons, rows) = (part(left.nets_stride), part(left.lessons_stride), part(left.rows_stride));
         let output =
             |word: (String, bool), left: u32, right: u32| (word.0, word.1 && (left, right) != (UNWRITTEN, UNWRITTEN));
-        let outputs = |left: &[u32], right: &[u32], place: &dyn Fn(usize) -> WordPlace| {
+        let outputs = |left: &[u32], right: &[u32], place: &dyn Fn(usize) -> WordField| {
             first(at, (left, right), failed, |word| output(place(word), left[word], right[word]))
         };
         first(at, (words(states.0), words(states.1)), failed, |word| {

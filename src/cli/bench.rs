@@ -1,7 +1,7 @@
 //! `skilltree bench`: how fast this machine is.
 
 use super::console::{print, tell};
-use super::{CliError, exit_codes};
+use super::error::{CliError, exit_codes};
 use crate::bench::executor::ExecutorSet;
 use crate::bench::export::{self, export};
 use crate::bench::measure::{BenchOptions, bench as run_bench};

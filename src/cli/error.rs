@@ -9,6 +9,14 @@ use crate::run_folder::RecordError;
 use crate::train::batch_group::SetupError;
 use crate::train::run::RunError;
 
+/// The last line of every help text.
+macro_rules! exit_codes {
+    () => {
+        "Exit codes: 0 done; 2 wrong usage or config; 75 give the same command again; 1 anything else."
+    };
+}
+pub(super) use exit_codes;
+
 /// An error as the user sees it.
 #[derive(Debug, thiserror::Error)]
 pub enum CliError {

@@ -1,7 +1,7 @@
 //! `skilltree keys`: the reference of every key.
 
 use super::console::print;
-use super::{CliError, exit_codes};
+use super::error::{CliError, exit_codes};
 use crate::config::reference;
 use clap::ValueEnum;
 

@@ -18,14 +18,7 @@ pub use console::tell;
 pub use error::CliError;
 
 use clap::{Parser, Subcommand};
-
-/// The last line of every help text.
-macro_rules! exit_codes {
-    () => {
-        "Exit codes: 0 done; 2 wrong usage or config; 75 give the same command again; 1 anything else."
-    };
-}
-use exit_codes;
+use error::exit_codes;
 
 /// Trains thousands of small robots at once, each learning its own tree of skills by reinforcement, with
 /// the same bytes on any exact GPU and on the CPU.
@@ -64,9 +57,4 @@ pub fn run(cli: Cli) -> Result<(), CliError> {
         Command::Bench(arguments) => bench::bench(&arguments),
         Command::Keys(arguments) => keys::keys(&arguments),
     }
-}
-
-/// `1 seed`, `2 seeds`.
-fn count(number: usize, what: &str) -> String {
-    if number == 1 { format!("1 {what}") } else { format!("{number} {what}s") }
 }

@@ -1,7 +1,7 @@
 //! `skilltree devices --parity`: does every adapter leave the bytes of the CPU, from end to end?
 
-use super::console::print;
-use super::{CliError, count};
+use super::console::{count, print};
+use super::error::CliError;
 use crate::backend::cpu::cpu_backend;
 use crate::backend::open::open_adapters;
 use crate::config::{Overrides, load};

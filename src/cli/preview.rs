@@ -1,7 +1,6 @@
 //! What a run is going to do and take, told before it begins.
 
-use super::console::tell;
-use super::count;
+use super::console::{count, tell};
 use crate::backend::{Backend, BackendError};
 use crate::config::plan::{Design, Plan};
 use crate::train::batch_group::BatchGroup;

@@ -1,7 +1,7 @@
 //! `skilltree probe`: one robot under given actions, and all that it observed.
 
 use super::console::print;
-use super::{CliError, exit_codes};
+use super::error::{CliError, exit_codes};
 use crate::backend::Backend;
 use crate::backend::cpu::cpu_backend;
 use crate::config::plan::Action;

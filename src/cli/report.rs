@@ -2,7 +2,7 @@
 
 #[cfg(feature = "report")]
 use super::console::print;
-use super::{CliError, exit_codes};
+use super::error::{CliError, exit_codes};
 use std::path::{Path, PathBuf};
 
 /// Draws the figures and writes the self-contained HTML page of complete runs.

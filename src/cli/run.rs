@@ -2,9 +2,10 @@
 
 use super::backend::BackendArguments;
 use super::console::{print, tell};
+use super::error::{CliError, exit_codes};
 use super::progress::RunProgress;
 use super::signals::Signals;
-use super::{CliError, exit_codes, preview, report};
+use super::{preview, report};
 use crate::config::Overrides;
 use crate::experiment::Experiment;
 use crate::run_folder::file_system::{Disk, FileSystem};

@@ -2,7 +2,7 @@
 
 use super::all_figures;
 use super::error::ReportError;
-use super::figure::svg;
+use super::figure::render_svg;
 use super::page::{self, DrawnFigure};
 use super::results::RunResults;
 use crate::run_folder::file_system::{Disk, FileSystem};
@@ -42,7 +42,7 @@ pub struct WrittenReport {
 pub fn render(run: &FinishedRun) -> Result<RenderedReport, ReportError> {
     let results = RunResults::read(run)?;
     let figures = all_figures::draw(run, &results)?.into_par_iter().map(|figure| {
-        let svg = svg(&figure);
+        let svg = render_svg(&figure);
         DrawnFigure { name: figure.name, section: figure.section, svg }
     });
     let figures: Vec<DrawnFigure> = figures.collect();

@@ -5,4 +5,5 @@
 //! the robot with the same twins as the kernels, so what it plans for is what happens.
 
 pub mod demonstrations;
+mod slip;
 pub mod value_iteration;

@@ -3,6 +3,7 @@
 //! The grid is 5 in x 5 in x 15 degrees. Actuator noise enters by a three-point quadrature; between grid
 //! poses values are interpolated, over the poses that a robot can take.
 
+use super::slip::{SLIPS, slips};
 use crate::backend::cpu::lanes::contact::body_after;
 use crate::backend::cpu::lanes::draws::place_of;
 use crate::backend::cpu::lanes::sonar::{ranges, rays};
@@ -11,7 +12,6 @@ use crate::env::events::NOWHERE;
 use crate::env::motion::{BESIDE_LEFT, BESIDE_RIGHT, COLLISION, PASSED_DOOR};
 use crate::env::sonar::sonar_reading;
 use crate::env::workgroup::CohortData;
-use crate::layout::choices::NOISE_GAUSSIAN;
 use crate::layout::{Observation, RAYS};
 use crate::math::functions::sin_cos;
 use crate::world::{Pose, World};
@@ -31,8 +31,6 @@ const TOLERANCE: f32 = 1.0e-5;
 const STUCK: f32 = 0.5;
 /// More sweeps than any discount below 1 needs for [`TOLERANCE`] in worlds of this size.
 const MOST_SWEEPS: usize = 2_000;
-/// Points of the quadrature over the slip of the actuators.
-const SLIPS: usize = 3;
 
 /// The solved task: how good every pose is, and what to do there.
 #[derive(Debug, Clone)]
@@ -373,16 +371,6 @@ impl Between {
     fn of(self, values: &[f32]) -> f32 {
         values[self.first] * (1.0 - self.part) + values[self.second] * self.part
     }
-}
-
-/// Three-point quadrature of the actuators' slip: factors and weights.
-fn slips(noise: &Noise) -> [(f32, f32); SLIPS] {
-    let (far, weight) = match noise.kind {
-        NOISE_GAUSSIAN => (3.0_f32.sqrt(), 1.0 / 6.0),
-        _ => (0.6_f32.sqrt(), 5.0 / 18.0),
-    };
-    let reach = noise.actuator * far;
-    [(1.0 - reach, weight), (1.0, 1.0 - 2.0 * weight), (1.0 + reach, weight)]
 }
 
 fn pays_beside(skill: &SkillPlan) -> bool {

@@ -3,7 +3,7 @@
 use crate::close;
 use crate::hand_made_tables::HandMadeTables;
 use skilltree::report::comparison::{Comparison, median_actions, within};
-use skilltree::report::figure::{PageSection, svg};
+use skilltree::report::figure::{PageSection, render_svg};
 use skilltree::report::figure2;
 use skilltree::report::rooms::{self, low_quantile};
 use skilltree::report::statistics::{ratio, ratio_of, sorted};
@@ -66,15 +66,15 @@ fn figure_2_has_a_panel_per_kind_of_arm() {
     let names: Vec<_> = drawings.iter().map(|drawing| drawing.name.as_str()).collect();
     // The monolithic arm has tests, which only the paper's version shows, and no training trials.
     assert_eq!(names, ["figure-2a-paper", "figure-2b-paper", "figure-2b"]);
-    let paper = svg(&drawings[1]);
+    let paper = render_svg(&drawings[1]);
     assert!(paper.contains(">greedy tests<") && paper.contains(">Mean over the first n = 2 seeds; no interval.<"));
-    assert!(svg(&drawings[2]).contains(">Sums over n = 2 seeds"));
+    assert!(render_svg(&drawings[2]).contains(">Sums over n = 2 seeds"));
     // Both panels can be compared.
     assert_eq!((&drawings[0].x, &drawings[0].y), (&drawings[1].x, &drawings[1].y));
     assert_eq!(drawings.iter().filter(|drawing| drawing.section == PageSection::Paper).count(), 2);
     let costs = figure2::equal_cost(&comparison);
     assert_eq!(costs.len(), 4);
-    assert!(costs.iter().all(|figure| svg(figure).contains(">monolithic<")), "{:?}", costs[0]);
+    assert!(costs.iter().all(|figure| render_svg(figure).contains(">monolithic<")), "{:?}", costs[0]);
     assert!(Comparison::new(&HandMadeTables::default().summary()).is_none());
 }
 
@@ -179,7 +179,7 @@ fn trajectories_are_drawn_in_the_colour_of_who_drives() {
     assert_eq!(cut.iter().map(|piece| (piece.child, piece.way.len())).collect::<Vec<_>>(), [(0, 3), (1, 4), (0, 2)]);
     assert_eq!(cut[1].way[0], cut[0].way[2]);
     let world = load::parse(crate::OFFICE, Path::new("world.toml")).unwrap();
-    let drawn = svg(&draw(&world, &trajectory));
+    let drawn = render_svg(&draw(&world, &trajectory));
     // Each child's pieces and its entry in the legend; the third child never drives.
     let lines = |color: &str| drawn.matches(&format!("fill=\"none\" stroke=\"{color}\"")).count();
     assert_eq!((lines("#0072b2"), lines("#d55e00"), lines("#009e73")), (2 + 1, 1 + 1, 0));

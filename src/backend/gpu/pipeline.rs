@@ -2,9 +2,10 @@
 
 use super::device::Device;
 use super::source::Kernel;
-use super::spirv::{OverrideValues, check, compile};
+use super::spirv::{check, compile};
 use super::workgroup_weights::{HELD, held};
 use crate::backend::BackendError;
+use naga::back::PipelineConstants;
 
 /// A compute pipeline and the layout of its one bind group.
 #[derive(Debug)]
@@ -45,7 +46,7 @@ impl Pipeline {
         });
         let module = if device.passthrough {
             let overridden = checked.module.overrides.iter().any(|(_, value)| value.name.as_deref() == Some(HELD));
-            let overrides: OverrideValues =
+            let overrides: PipelineConstants =
                 overridden.then(|| (HELD.to_owned(), f64::from(held))).into_iter().collect();
             let words = compile(&checked, &kernel, &overrides).map_err(failed)?;
             let entry_points = vec![wgpu::PassthroughShaderEntryPoint {

@@ -4,7 +4,7 @@
 //! no WGSL text can ask for it, so the decoration is put on every float result here.
 
 use super::source::Kernel;
-use naga::back::spv;
+use naga::back::{PipelineConstants, spv};
 use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 
@@ -48,15 +48,12 @@ pub fn check(wgsl: &str) -> Result<Checked, String> {
     Ok(Checked { module, info })
 }
 
-/// Values of a kernel's overrides, by name; those not named keep what the text says.
-pub type OverrideValues = naga::back::PipelineConstants;
-
 /// SPIR-V of a checked kernel: indices bounded, workgroup memory zeroed but for arrays whose length is an override,
 /// every float result decorated.
 ///
 /// # Errors
 /// Where naga cannot express the module.
-pub fn compile(checked: &Checked, kernel: &Kernel, overrides: &OverrideValues) -> Result<Vec<u32>, String> {
+pub fn compile(checked: &Checked, kernel: &Kernel, overrides: &PipelineConstants) -> Result<Vec<u32>, String> {
     let (module, info) =
         naga::back::pipeline_constants::process_overrides(&checked.module, &checked.info, None, overrides)
             .map_err(|error| error.to_string())?;
@@ -163,7 +160,7 @@ mod tests {
     fn both(kernel: &Kernel) -> (Vec<u32>, Vec<u32>) {
         let checked = check(&kernel.wgsl()).expect(kernel.name);
         let held = (kernel.name == TRAIN.name).then(|| ("HELD_WORDS".to_owned(), f64::from(LENGTH)));
-        let overrides: OverrideValues = held.into_iter().collect();
+        let overrides: PipelineConstants = held.into_iter().collect();
         let (module, info) =
             naga::back::pipeline_constants::process_overrides(&checked.module, &checked.info, None, &overrides)
                 .expect(kernel.name);

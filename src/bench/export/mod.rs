@@ -10,49 +10,18 @@
 
 mod replay;
 mod robot_steps;
+mod tensor;
 
 use super::{BenchError, make_folder, write_file};
-use safetensors::tensor::{Dtype, TensorView};
+use safetensors::tensor::TensorView;
 use serde_json::{Map, Value};
 use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::path::Path;
+use tensor::ExportTensor;
 
-/// Robots of `simulate.safetensors`.
-pub const ROBOTS: u32 = 4096;
-/// Steps of each.
-pub const STEPS: u32 = 16;
 /// Learners of `replay.safetensors`, unless told otherwise.
 pub const LEARNERS: u32 = 256;
-/// Passes over each learner's lessons.
-pub const PASSES: u32 = 30;
-
-/// Name, unit and meaning of a tensor.
-type TensorText = (&'static str, &'static str, &'static str);
-
-/// One tensor with its line in the README.
-struct ExportTensor {
-    name: &'static str,
-    dtype: Dtype,
-    shape: Vec<usize>,
-    unit: &'static str,
-    meaning: &'static str,
-    bytes: Vec<u8>,
-}
-
-impl ExportTensor {
-    fn new<T: bytemuck::Pod>((name, unit, meaning): TensorText, dtype: Dtype, shape: &[usize], values: &[T]) -> Self {
-        Self { name, dtype, shape: shape.to_vec(), unit, meaning, bytes: bytemuck::cast_slice(values).to_vec() }
-    }
-
-    fn floats(words: TensorText, shape: &[usize], values: &[f32]) -> Self {
-        Self::new(words, Dtype::F32, shape, values)
-    }
-
-    fn codes(words: TensorText, shape: &[usize], values: &[i32]) -> Self {
-        Self::new(words, Dtype::I32, shape, values)
-    }
-}
 
 /// Writes the files into `folder`, which is made if it is not there.
 ///
@@ -68,13 +37,6 @@ pub fn export(folder: &Path, learners: u32) -> Result<(), BenchError> {
         .replace("{simulate}", &table(&walk, &numbers))
         .replace("{replay}", &table(&replay, &params));
     write_file(&folder.join("README.md"), readme.as_bytes())
-}
-
-fn object(value: Value) -> Map<String, Value> {
-    match value {
-        Value::Object(map) => map,
-        _ => Map::new(),
-    }
 }
 
 /// Writes one file. The metadata has one entry: with several, their order would change from run to run.

@@ -1,6 +1,6 @@
 //! Tensors of `replay.safetensors`.
 
-use super::{ExportTensor, PASSES, TensorText, object};
+use super::tensor::{ExportTensor, PASSES, TensorText, object};
 use crate::backend::Cohort;
 use crate::bench::benchmarks::UpdateRule;
 use crate::bench::executor::open_cpu;

@@ -1,6 +1,6 @@
 //! Tensors of `simulate.safetensors`.
 
-use super::{ExportTensor, ROBOTS, STEPS, object};
+use super::tensor::{ExportTensor, ROBOTS, STEPS, object};
 use crate::bench::embedded_configs::{DOCKING, embedded_plan};
 use crate::bench::executor::open_cpu;
 use crate::bench::robot_walk::RobotWalk;

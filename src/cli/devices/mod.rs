@@ -2,10 +2,12 @@
 
 #[cfg(feature = "gpu")]
 mod examine;
+mod listing;
 
 use super::console::print;
-use super::{CliError, exit_codes, parity};
-use serde::Serialize;
+use super::error::{CliError, exit_codes};
+use super::parity;
+use listing::{AdapterReport, DeviceList};
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -29,36 +31,6 @@ pub(super) struct DevicesArguments {
     /// Learners that --parity trains.
     #[arg(long, value_name = "N", requires = "parity", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=65_536))]
     learners: u32,
-}
-
-/// What is known of all adapters.
-#[derive(Debug, Serialize)]
-struct DeviceList {
-    adapters: Vec<AdapterReport>,
-    /// Why there is none.
-    none: Option<String>,
-}
-
-/// What is known of one adapter.
-#[derive(Debug, Serialize)]
-struct AdapterReport {
-    name: String,
-    backend: String,
-    driver: String,
-    kind: String,
-    software: bool,
-    max_buffer_bytes: u64,
-    max_binding_bytes: u64,
-    max_storage_buffers: u32,
-    takes_spirv: bool,
-    exact: bool,
-    /// Functions and shapes of which each answer was compared.
-    #[serde(skip)]
-    compared: String,
-    /// The first difference, or what failed.
-    reason: Option<String>,
-    subnormals_kept: Option<bool>,
-    loop_budget: Option<u32>,
 }
 
 /// Prints the adapters, or what they do to an experiment.

@@ -11,4 +11,4 @@ mod render;
 pub mod svg;
 
 pub use plot::{Figure, LegendEntry, PageSection, PlotArea, Swatch};
-pub use render::{spread, svg};
+pub use render::{render_svg, spread};

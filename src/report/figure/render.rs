@@ -18,7 +18,7 @@ const SWATCH: f64 = 20.0;
 const LEADER: f64 = 22.0;
 
 /// Draws a figure.
-pub fn svg(figure: &Figure) -> String {
+pub fn render_svg(figure: &Figure) -> String {
     let area = figure.area;
     let plot = PlotOnPage { figure, left: area.left, right: area.left + area.width, bottom: TOP + area.height };
     let width = plot.right + area.right;
