@@ -17,10 +17,10 @@ fn the_page_and_the_terminal_say_what_was_found() {
     let written = write(&dir).unwrap();
     let files: Vec<_> = written.files.iter().map(|path| path.strip_prefix(&dir).unwrap().to_str().unwrap()).collect();
     for name in [
-        "sweep-hierarchical-skill-recharge-applicable-dock-learning-rate",
-        "sweep-hierarchical-values-learning-rate",
+        "sweep-hierarchical-skill-recharge-applicable-dock-learning-learning_rate",
+        "sweep-hierarchical-values-learning-learning_rate",
         "sweep-hierarchical-profile-skill-recharge-applicable-dock",
-        "sweep-hierarchical-criterion-learning-rate",
+        "sweep-hierarchical-criterion-learning-learning_rate",
     ] {
         assert!(files.contains(&format!("figures/{name}.svg").as_str()), "{name}: {files:?}");
     }
@@ -74,7 +74,7 @@ fn further_axes_are_margins_and_slices() {
     folder(&dir, &sweep, &rows, 8);
     let written = write(&dir).unwrap();
     let maps = |part: &str| written.files.iter().filter(|path| path.display().to_string().contains(part)).count();
-    assert_eq!((maps("-slice-"), maps("applicable-dock-world."), maps("learning-rate-world.")), (2, 1, 1));
+    assert_eq!((maps("-slice-"), maps("applicable-dock-world."), maps("learning_rate-world.")), (2, 1, 1));
     let page = fs::read_to_string(dir.join("report.html")).unwrap();
     assert!(page.contains("At office office-hard.") && page.contains("mean over up to 2 points on the other axes"));
     assert!(written.summary.contains("Only 8 seeds"));
@@ -125,7 +125,7 @@ fn random_points_are_put_into_classes() {
     let dir = scratch("report-sweep-random");
     folder(&dir, &sweep, &rows, 12);
     write(&dir).unwrap();
-    let svg = fs::read_to_string(dir.join("figures/sweep-hierarchical-learning-rate-learning-lambda.svg")).unwrap();
+    let svg = fs::read_to_string(dir.join("figures/sweep-hierarchical-learning-learning_rate-learning-lambda.svg")).unwrap();
     // A rim and a fill for each point.
     assert!(svg.matches("<circle").count() >= 80);
     assert!(svg.contains(">0.001<") && svg.contains(">0.1<"));
