@@ -95,7 +95,7 @@ fn mistakes_in_files_have_their_line() {
         ("learning_rate = 0.01", "learning_rate = -0.01", 4, "out of range", "more than 0"),
         ("learning_rate = 0.01", "learning_rate = 0.01\nlearning_rate = 0.02", 5, "duplicate key", "toml.io"),
         ("learning_rate = 0.01", "learning_rate =", 4, "not valid TOML", "toml.io"),
-        ("learning_rate = 0.01", "optimiser = 'sgd'", 4, "sgd has no default rate", "learning_rate = 0.15"),
+        ("learning_rate = 0.01", "optimiser = 'sgd'", 4, "sgd has no default learning rate", "learning_rate = 0.15"),
         ("learning_rate = 0.01", "momentum = 0.9", 4, "`learning.momentum` has no effect", "sgd"),
         ("learning.gamma = 0.5", "learning.gama = 0.5", 12, "unknown key `learning.gama`", "did you mean `gamma`"),
         ("learning.gamma = 0.5", "learning.gamma = 2", 12, "out of range", "between 0 and 1"),

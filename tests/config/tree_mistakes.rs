@@ -70,7 +70,7 @@ fn trees_and_worlds_that_cannot_be_are_refused() {
         ),
         ("robot.memory.light_decay=1", "out of range", "less than 1"),
         ("robot.memory.door_decay=-0.1", "out of range", "at least 0"),
-        ("robot.memory.range_decay=0", "unknown key `robot.memory.range_decay`", "did you mean `ranges`"),
+        ("robot.memory.range_decy=0", "unknown key `robot.memory.range_decy`", "did you mean `range_decay`"),
         (
             "robot.beside.near=30",
             "`robot.beside.near` is 30, which is not less than `robot.beside.far`, 30",

@@ -128,6 +128,7 @@ fn moves_are_those_of_the_plain_form() {
         };
         compare(&moves, &faulty, |forms, case| bytemuck::cast_slice(&[moved(forms, case)]).to_vec());
         let events = |bit: u32| moves.iter().filter(|case| moved(&PLAIN, case).events & bit != 0).count();
-        assert!(events(COLLISION) > 300 && events(DOCKED) > 3, "{}: {}", place.name, events(DOCKED));
+        let (collisions, docked) = (events(COLLISION), events(DOCKED));
+        assert!(collisions > 200 && docked > 10, "{}: {collisions}, {docked}", place.name);
     }
 }
