@@ -84,7 +84,7 @@ fn trees_and_worlds_that_cannot_be_are_refused() {
         ("learning.advantage_scale=0.5", "out of range", "between 1 and 1000"),
         ("arm.full.learning.intra_skill_share=1.5", "out of range", "between 0 and 1"),
         ("skill.dock.learning.child_inverse_temperature=-1", "out of range", "between 0 and 10000"),
-        ("transfer.movd.world=worlds/flat.toml", "there is no alteration `movd`", "did you mean `moved`"),
+        ("transfer.movd.world=worlds/flat.toml", "there is no transfer `movd`", "did you mean `moved`"),
         ("transfer.moved.wrld=x", "unknown key `transfer.moved.wrld`", "did you mean `world`"),
         ("transfer.loud.noise=0.3", "`transfer.loud.noise` must be a table", "key = value"),
         ("transfer.loud.noise.loud=0.3", "unknown key `transfer.loud.noise.loud`", "`actuator`"),
