@@ -143,10 +143,10 @@ impl UpdateRule {
         let Self { arm, optimiser, hidden, .. } = self;
         let set = [
             format!("arms=[\"{arm}\"]"),
-            format!("arm.{arm}.learning.taught_passes={passes}"),
+            format!("arm.{arm}.learning.pretrain_epochs={passes}"),
             format!("arm.{arm}.learning.optimiser=\"{optimiser}\""),
             format!("learning.hidden={hidden}"),
-            "teacher.episodes=1".to_owned(),
+            "teacher.eval_episodes=1".to_owned(),
             "skill.dock.trials=0".to_owned(),
         ];
         embedded_plan(DOCKING, &set.each_ref().map(String::as_str), learners)
@@ -208,7 +208,7 @@ impl HierarchyLearners {
     /// # Errors
     /// Where the built-in config cannot be read or its teacher fails.
     pub fn new(config: &str, set: &[&str], learners: u32) -> Result<Self, BenchError> {
-        let set = [&["arms=[\"hierarchical\"]", "teacher.episodes=1"], set].concat();
+        let set = [&["arms=[\"hierarchical\"]", "teacher.eval_episodes=1"], set].concat();
         let plan = embedded_plan(config, &set, learners)?;
         let group = groups(&plan)?.swap_remove(0);
         Ok(Self { plan, group })
