@@ -125,7 +125,8 @@ fn random_points_are_put_into_classes() {
     let dir = scratch("report-sweep-random");
     folder(&dir, &sweep, &rows, 12);
     write(&dir).unwrap();
-    let svg = fs::read_to_string(dir.join("figures/sweep-hierarchical-learning-learning_rate-learning-lambda.svg")).unwrap();
+    let svg =
+        fs::read_to_string(dir.join("figures/sweep-hierarchical-learning-learning_rate-learning-lambda.svg")).unwrap();
     // A rim and a fill for each point.
     assert!(svg.matches("<circle").count() >= 80);
     assert!(svg.contains(">0.001<") && svg.contains(">0.1<"));
