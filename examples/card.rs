@@ -163,7 +163,7 @@ fn replay(learners: &[u32], rules: &str, variants: &str, transitions: u64, deadl
                 let (wall, loaded, held, found) = if variant == "cpu" {
                     let mut backend = cpu();
                     let (wall, loaded) = drilled(&taught, &mut backend);
-                    (wall, loaded, 0, backend.memory().map(Cohort::clone))
+                    (wall, loaded, 0, backend.memory().cloned())
                 } else {
                     let backend = match variant {
                         "not-held" => plain.get_or_insert_with(|| gpu(Some(1), None, None)),
@@ -177,7 +177,7 @@ fn replay(learners: &[u32], rules: &str, variants: &str, transitions: u64, deadl
                     let (wall, loaded) = drilled(&taught, backend);
                     on_device = Some((backend.traffic().spent - before).as_secs_f64());
                     let held = backend.held();
-                    (wall, loaded, held, backend.memory().map(Cohort::clone))
+                    (wall, loaded, held, backend.memory().cloned())
                 };
                 let found = found.unwrap_or_else(|error| panic!("{error}"));
                 let same = match &expected {

@@ -9,10 +9,10 @@ var<workgroup> lanes_bits: atomic<u32>;
 
 fn lanes_sums(lane: u32, children: u32, lanes: u32) {
     workgroupBarrier();
-    for (var width = lanes / 2u; width > 0u; width = width / 2u) {
+    for (var width = lanes / 2u; width > 0u; width /= 2u) {
         for (var child = 0u; child < children; child++) {
             if lane < width {
-                partials[child][lane] = partials[child][lane] + partials[child][lane + width];
+                partials[child][lane] += partials[child][lane + width];
             }
         }
         workgroupBarrier();

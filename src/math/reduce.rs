@@ -16,10 +16,10 @@ pub fn lanes_sums(partials: &mut Partials, children: u32, lanes: usize) {
     while width > 0 {
         for child in 0..children as usize {
             for lane in 0..width {
-                partials[child][lane] = partials[child][lane] + partials[child][lane + width];
+                partials[child][lane] += partials[child][lane + width];
             }
         }
-        width = width / 2;
+        width /= 2;
     }
 }
 

@@ -149,7 +149,6 @@ fn momentum_step<const UNITS: usize>(
 /// Moves net `number`, of which `UNITS` lanes are in use, so that its output `output` changes by about the errors' delta
 /// times the learning rate `step_size`.
 #[inline(always)]
-#[expect(clippy::too_many_arguments, reason = "parts of a workgroup, which the compiler must know apart")]
 fn apply<const UNITS: usize>(
     nets: &mut [f32],
     scratch: &mut Scratch<'_>,
