@@ -59,7 +59,7 @@ fn trees_of_skills_leave_the_bytes_of_cpu_and_reference() {
         let lessons = (0..after.states.len()).flat_map(|learner| remembered(after, learner, skill));
         let records: Vec<Step> = lessons.flat_map(|lesson| lesson.records).collect();
         let some = |what: &str, holds: &dyn Fn(&Step) -> bool| {
-            assert!(records.iter().any(|record| holds(record)), "skill {skill}: {what} never happened");
+            assert!(records.iter().any(holds), "skill {skill}: {what} never happened");
         };
         (0..children).for_each(|child| some(&format!("child {child}"), &|record| record.choice & 0xff == child));
         some("keeping to a child", &|record| record.choice >> 31 == 0);
