@@ -179,5 +179,5 @@ fn peers_know_which_draws_are_for_what() {
     random.draw_step(Stream { key: [1, 2], skill: 3, trial: 4, step: 5, purpose: 6 });
     let first = [random.x[0], random.y[0], random.z[0], random.w[0]];
     let shared = (1..RAYS).find(|bearing| first.contains(&random.bearing_word(0, *bearing))).expect("a second word");
-    assert_eq!(told, [Purpose::Given as usize, shared, DRAW_ACTUATOR, DRAW_COMPASS, DRAW_LIGHT as usize]);
+    assert_eq!(told, [Purpose::Given as usize, shared, DRAW_ACTUATOR, DRAW_COMPASS, DRAW_LIGHT]);
 }

@@ -12,12 +12,14 @@ pub(crate) fn likeness(wgsl: &str, rust: &str) -> f32 {
     diff_ratio(&capture_diff_slices(Algorithm::Lcs, &left, &right), left.len(), right.len())
 }
 
+/// What is written the same way in one step.
+type Step = fn(&[String]) -> Vec<String>;
+
 /// The tokens of all functions of a text, in one form for both languages.
 pub(crate) fn normalised(text: &str) -> Vec<String> {
     let tokens = tokens(text);
     let bodies: Vec<String> = functions(&tokens).into_iter().flat_map(|(name, body)| named(name, body)).collect();
-    let steps: [fn(&[String]) -> Vec<String>; 7] =
-        [without_types, words_of_records, loops, atomics, selections, without_lanes, without_marks];
+    let steps: [Step; 7] = [without_types, words_of_records, loops, atomics, selections, without_lanes, without_marks];
     steps.iter().fold(bodies, |tokens, step| step(&tokens))
 }
 
