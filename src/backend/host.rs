@@ -32,7 +32,7 @@ pub struct HostForms {
     pub instructions: fn() -> &'static str,
     /// The hot functions.
     pub hot: HotForms,
-    /// Kernel `step` for up to [`ROBOTS`] robots, so many times.
+    /// Kernel `step` for up to 16 robots, so many times.
     pub step: fn(&mut [Robot], &CohortData, u32),
 }
 

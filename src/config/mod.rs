@@ -1,7 +1,7 @@
 //! From what the user typed to a checked, immutable plan.
 //!
 //! Every key has one row: [`keys`] has those of this module, [`crate::layout::params`] the numbers that a learner's memory
-//! holds; [`reference`] prints them all. [`load()`] puts the layers together: defaults, the config that a file extends, the
+//! holds; [`mod@reference`] prints them all. [`load()`] puts the layers together: defaults, the config that a file extends, the
 //! file, `--set`, each arm's own table, the values at a point of the sweep. `hierarchy` finds the skills of an arm and
 //! their order, `worlds` the floor plans, `sweep` the points at which arms are run, `renamed` refuses old names. Every
 //! complaint is a [`ConfigError`] that shows the place and a way out.

@@ -58,7 +58,7 @@ impl Nets<'_> {
 /// The functions that take most of the time. A backend may have forms of its own that leave the same bytes.
 #[derive(Debug, Clone, Copy)]
 pub struct HotForms {
-    /// [`Workgroup::draw_step`].
+    /// [`StepRandom::draw_step`].
     pub draw_step: fn(&mut Workgroup<'_>, Stream),
     /// [`Workgroup::observe`].
     pub observe: fn(&mut Workgroup<'_>, x: f32, y: f32, heading: f32, bumpers: u32, noise: Noise),
