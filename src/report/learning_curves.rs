@@ -1,7 +1,7 @@
 //! Learning curves of each skill.
 
 use super::figure::curves::{Curve, CurvePoint, axes};
-use super::figure::{Figure, PageSection, PlotArea};
+use super::figure::{Figure, PlotArea};
 use super::format::{file_word, number, seeds};
 use super::statistics::{BAND_RESAMPLES, bootstrap, mean};
 use super::step_plot;
@@ -125,7 +125,8 @@ fn curves_of(skill: &SkillSummary, measure: &CurveMeasure) -> Figure {
     let (x, y) = axes(&curves, bound, (measure.x_title(), measure.y_title), measure.percent);
     let figure = Figure {
         name: format!("{}-{}", measure.file, file_word(&skill.name)),
-        section: PageSection::Skill(skill.name.clone()),
+        section: "skill",
+        about: skill.name.clone(),
         title: format!("{}: {}", skill.name, measure.heading),
         subtitle: measure.subtitle.into(),
         area,
@@ -149,7 +150,8 @@ fn profile(skill: &SkillSummary) -> Figure {
     }
     let figure = Figure {
         name: format!("profile-{}", file_word(&skill.name)),
-        section: PageSection::Skill(skill.name.clone()),
+        section: "skill",
+        about: skill.name.clone(),
         title: format!("{}: performance profile", skill.name),
         subtitle: "Share of seeds whose success at the last test exceeds x.".into(),
         notes,

@@ -7,37 +7,15 @@ use super::svg::{Stroke, SvgWriter, TextAnchor};
 /// Top of every plot.
 pub(super) const TOP: f64 = 64.0;
 
-/// A part of the page that has figures.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub enum PageSection {
-    /// The sweep of the arm of this name.
-    Sweep(String),
-    /// The paper's Figure 2, with its seven seeds.
-    Paper,
-    /// The same, with all seeds.
-    AllSeeds,
-    /// Learning curves over trials and over actions.
-    EqualCost,
-    /// Success by starting room.
-    Rooms,
-    /// Example trials.
-    Trajectories,
-    /// Floor plans of alterations and of arms elsewhere.
-    Transfer,
-    /// The skill of this name.
-    Skill(String),
-    /// The floor plan and the sensors.
-    #[default]
-    World,
-}
-
 /// A figure. Shapes are drawn in the units of its axes, with sizes in points; axes and area come first.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Figure {
     /// File name without its ending.
     pub name: String,
-    /// Where on the page it stands.
-    pub section: PageSection,
+    /// Where on the page it stands: the templates ask for it by this word.
+    pub section: &'static str,
+    /// In sections of one skill or of one arm's sweep, the name of that.
+    pub about: String,
     /// Its heading.
     pub title: String,
     /// A line below the heading that says what was measured.

@@ -1,7 +1,6 @@
 //! Learners worth a closer look, each with the command that trains it again, alone and with the same bytes.
 
-use super::response_surface::ResponseSurface;
-use super::results::SweepResults;
+use super::surface::{ResponseSurface, SweepResults};
 use crate::report::statistics::mean;
 use std::path::Path;
 

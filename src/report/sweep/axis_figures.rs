@@ -1,8 +1,6 @@
 //! What an axis does to all learners, not only to their mean: percentiles, performance profiles, survival curves.
 
-use super::format::measure;
-use super::main_effects::AxisLevel;
-use super::response_surface::{CRITERION, ResponseSurface};
+use super::surface::{AxisLevel, CRITERION, ResponseSurface};
 use crate::report::figure::axis::{PlotAxis, range_with_zero};
 use crate::report::figure::color::{INK, SKY, VERMILION};
 use crate::report::figure::curves::Curve;
@@ -55,10 +53,10 @@ fn percentiles(surface: &ResponseSurface, label: &str, levels: &[AxisLevel]) -> 
     };
     let mut figure = Figure {
         title: format!("{}: by {label}", surface.arm),
-        subtitle: format!("Each learner at its last test: {}.", measure(surface)),
+        subtitle: format!("Each learner at its last test: {}.", surface.measure()),
         area: PlotArea::SMALL,
         x: PlotAxis::categories(label, levels.iter().map(|level| level.label.clone()).collect()),
-        y: PlotAxis::linear(measure(surface), range, surface.success).with_grid(),
+        y: PlotAxis::linear(surface.measure(), range, surface.success).with_grid(),
         notes: vec![
             counted(surface, levels),
             "Boxes: 5th, 25th, 50th, 75th and 95th percentile of learners.".to_owned(),
