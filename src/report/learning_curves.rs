@@ -15,9 +15,7 @@ pub struct CurveMeasure {
     pub file: &'static str,
     /// What follows the skill in the figure's heading.
     pub heading: &'static str,
-    /// The line below the heading.
     pub subtitle: &'static str,
-    /// Title of the y axis.
     pub y_title: &'static str,
     /// Whether values are shares.
     pub percent: bool,
@@ -70,7 +68,6 @@ const UNENDING: [CurveMeasure; 1] = [CurveMeasure {
 }];
 
 impl CurveMeasure {
-    /// Title of the x axis.
     pub fn x_title(&self) -> &'static str {
         if self.against_actions { "executed actions" } else { "training trials" }
     }

@@ -14,8 +14,6 @@ pub mod claims;
 #[doc(hidden)]
 pub mod comparison;
 #[doc(hidden)]
-pub mod error;
-#[doc(hidden)]
 pub mod figure;
 #[doc(hidden)]
 pub mod figure2;
@@ -47,5 +45,5 @@ pub mod trajectory_plot;
 pub mod transfer;
 mod write;
 
-pub use error::ReportError;
+pub use results::ReportError;
 pub use write::{PAGE, RenderedReport, WrittenReport, render, write, write_on};

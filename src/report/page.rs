@@ -2,10 +2,9 @@
 
 use super::claims::Claim;
 use super::comparison::Comparison;
-use super::error::ReportError;
 use super::format::{add_filters, median_trials, trials_by};
 use super::learning_curves::with_copies;
-use super::results::RunResults;
+use super::results::{ReportError, RunResults};
 use super::statistics::{
     SurvivalCurve, TABLE_RESAMPLES, TimeToEvent, bootstrap, interquartile_mean, mean, mean_of, paired_difference,
     share_below, wilson,
@@ -35,7 +34,6 @@ const TEMPLATES: [(&str, &str); 4] = [
 pub struct DrawnFigure {
     /// File name without its ending.
     pub name: String,
-    /// Where it stands.
     pub section: &'static str,
     /// The skill or the sweep's arm that the section is about, if it is about one.
     pub about: String,

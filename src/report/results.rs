@@ -1,10 +1,10 @@
 //! What a run holds, read, summed and judged.
 
 use super::claims::{self, Claim};
-use super::error::ReportError;
 use super::summary::{self, Summary};
 use super::sweep::SweepResults;
 use super::training::{self, TrainingCurve};
+use crate::config::ConfigError;
 use crate::run_folder::failures::failures_of;
 use crate::run_folder::sensor_readings::{self, read_places};
 use crate::run_folder::sweep::{self, read_sweep};
@@ -14,6 +14,20 @@ use crate::run_folder::{FinishedRun, PlaceReading, RecordError, Trajectory, fold
 use crate::world::{World, load};
 use std::collections::BTreeMap;
 use std::path::Path;
+
+/// An error in making a report.
+#[derive(Debug, thiserror::Error)]
+pub enum ReportError {
+    /// The run folder cannot be read or written.
+    #[error(transparent)]
+    Record(#[from] RecordError),
+    /// The run folder's floor plan cannot be read: another version of skilltree made the run.
+    #[error("{0}\nnote: the run was made by another version of skilltree: use that one")]
+    World(#[from] ConfigError),
+    /// A template failed.
+    #[error("the page could not be written: {0:#}\nhint: this is a bug in skilltree: please report it")]
+    Page(#[from] minijinja::Error),
+}
 
 /// What tables and figures are made from.
 #[derive(Debug)]

@@ -1,10 +1,9 @@
 //! Makes the report of a run, and writes it into the run's folder.
 
 use super::comparison::Comparison;
-use super::error::ReportError;
 use super::figure::{Figure, render_svg};
 use super::page::{self, DrawnFigure};
-use super::results::RunResults;
+use super::results::{ReportError, RunResults};
 use super::{figure2, floor_plan, learning_curves, rooms, sweep, trajectory_plot};
 use crate::run_folder::file_system::{Disk, FileSystem};
 use crate::run_folder::{FinishedRun, folder, writer};

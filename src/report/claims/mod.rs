@@ -91,13 +91,10 @@ pub struct Claim {
     pub number: usize,
     /// What it is about, in two or three words.
     pub title: &'static str,
-    /// The claim in our words.
     pub says: &'static str,
     /// What the run says; empty if it says nothing.
     pub figures: Vec<String>,
-    /// Seeds behind the figures.
     pub seeds: usize,
-    /// What became of it.
     pub verdict: ClaimVerdict,
     /// The rule, or what is missing.
     pub why: String,

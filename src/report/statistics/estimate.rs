@@ -15,11 +15,8 @@ pub(super) const Z: f64 = 1.959_963_984_540_054;
 /// A value and the ends of its interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
-    /// The value itself.
     pub value: f64,
-    /// Lower end.
     pub low: f64,
-    /// Upper end.
     pub high: f64,
 }
 

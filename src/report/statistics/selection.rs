@@ -13,7 +13,6 @@ const ROUNDING: f64 = 1e-9;
 pub struct Selection {
     /// The candidate with the highest mean; the first one of equals.
     pub best: usize,
-    /// Mean of each candidate.
     pub means: Vec<f64>,
     /// For each candidate the mean of best minus candidate over pairs of the same seed.
     pub behind: Vec<Estimate>,

@@ -14,7 +14,6 @@ pub struct Score {
     pub seed: u32,
     /// Primitive actions executed up to the test.
     pub actions: u32,
-    /// Trials.
     pub episodes: u64,
     /// Trials that ended as achieved.
     pub successes: u64,

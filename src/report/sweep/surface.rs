@@ -25,7 +25,6 @@ pub struct SweepResults {
     pub surfaces: Vec<ResponseSurface>,
     /// Points left out because some seeds have no tests there: arm, point, seeds that have.
     pub lacking: Vec<(String, u32, usize)>,
-    /// Learners that diverged.
     pub diverged: Vec<Divergence>,
 }
 
