@@ -1,7 +1,6 @@
 //! Choosing the best of several candidates that were tried on the same seeds, and how sure the choice is.
 
-use super::estimate::{Estimate, TABLE_RESAMPLES, paired_difference};
-use super::sample::mean;
+use super::estimate::{Estimate, TABLE_RESAMPLES, mean, paired_difference};
 use crate::report::bootstrap_rng::resample;
 use rayon::prelude::*;
 

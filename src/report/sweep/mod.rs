@@ -4,7 +4,6 @@
 //! An arm's root skill is judged by the last test: share of test trials achieved, or the discounted return of a skill
 //! that never ends. Points of one arm share their seeds, so they are compared seed by seed.
 
-mod axis_figures;
 mod figures;
 mod maps;
 mod rerun;
