@@ -5,8 +5,8 @@ use super::error::{CliError, exit_codes};
 use crate::bench::executor::ExecutorSet;
 use crate::bench::export::{self, export};
 use crate::bench::measure::{BenchOptions, bench as run_bench};
+use crate::bench::result;
 use crate::bench::scaling::{COUNTS, scaling};
-use crate::bench::{result, text};
 use std::path::{Path, PathBuf};
 
 /// Measures robot-steps, decisions, replayed transitions and whole learners on every backend. Whatever two of them do
@@ -70,5 +70,5 @@ pub(super) fn bench(arguments: &BenchArguments) -> Result<(), CliError> {
     if arguments.record {
         tell(&format!("kept: {}", report.record(Path::new(result::FOLDER))?.display()));
     }
-    print(&if arguments.json { report.json() } else { text::text(&report) })
+    print(&if arguments.json { report.json() } else { report.text() })
 }
