@@ -12,7 +12,8 @@
 
 use skilltree::backend::Cohort;
 use skilltree::backend::cpu::cpu_backend;
-use skilltree::backend::gpu::{GpuBackend, GpuOptions, adapter, arithmetic_check, conformance, device::Device};
+use skilltree::backend::gpu::conformance::{QUESTIONS, ShapeDifference, ask, differences, questions};
+use skilltree::backend::gpu::{GpuBackend, GpuOptions, adapter, device::Device};
 use skilltree::backend::host::HostBackend;
 use skilltree::backend::parity;
 use skilltree::bench::benchmarks::UpdateRule;
@@ -43,26 +44,14 @@ fn shapes() -> bool {
     for adapter in &found {
         let name = adapter.get_info().name;
         let device = Device::open(adapter).unwrap_or_else(|error| panic!("{error}"));
-        let questions = conformance::questions(conformance::QUESTIONS);
-        let answers = conformance::ask(&device, &questions).unwrap_or_else(|error| panic!("{error}"));
-        for word in 0..arithmetic_check::ANSWER_WORDS {
-            let (mut count, mut first) = (0, None);
-            for (asked, found) in questions.as_chunks::<32>().0.iter().zip(answers.as_chunks::<32>().0) {
-                for (wanted, found) in arithmetic_check::arithmetic_check(asked).iter().zip(found) {
-                    if wanted[word] != found[word] {
-                        count += 1;
-                        first.get_or_insert((wanted[word], found[word]));
-                    }
-                }
-            }
-            if let Some((wanted, found)) = first {
-                equal = false;
-                println!(
-                    "{{\"what\":\"shape\",\"adapter\":{name:?},\"shape\":{:?},\"differing\":{count},\"of\":{},\"wanted\":\"{wanted:#010x}\",\"found\":\"{found:#010x}\"}}",
-                    arithmetic_check::NAMES[word],
-                    questions.len()
-                );
-            }
+        let questions = questions(QUESTIONS);
+        let answers = ask(&device, &questions).unwrap_or_else(|error| panic!("{error}"));
+        for ShapeDifference { name: shape, count, wanted, found, .. } in differences(&questions, &answers) {
+            equal = false;
+            println!(
+                "{{\"what\":\"shape\",\"adapter\":{name:?},\"shape\":{shape:?},\"differing\":{count},\"of\":{},\"wanted\":\"{wanted:#010x}\",\"found\":\"{found:#010x}\"}}",
+                questions.len()
+            );
         }
         println!("{{\"what\":\"shapes\",\"adapter\":{name:?},\"equal\":{equal}}}");
     }

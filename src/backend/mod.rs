@@ -79,6 +79,11 @@ fn fresh(count: usize) -> Vec<Episode> {
     vec![Episode { state: EPISODE_FRESH, ..unset }; count]
 }
 
+/// What follows where no cohort is loaded.
+fn nothing_loaded() -> BackendError {
+    BackendError::Device { kernel: "train", message: "no cohort is loaded".to_owned() }
+}
+
 /// Executes kernels.
 pub trait Backend {
     /// What to call it in messages and manifests, such as `cpu, 2 threads`.

@@ -18,7 +18,7 @@ pub mod source;
 pub mod spirv;
 pub mod workgroup_weights;
 
-use super::{Backend, BackendError, Cohort, Stop, Test, fresh};
+use super::{Backend, BackendError, Cohort, Stop, Test, fresh, nothing_loaded};
 use crate::env::workgroup::CohortData;
 use crate::layout::{Dispatch, Episode, LearnerState, Robot, TRIAL_WORDS};
 use bytemuck::Zeroable;
@@ -79,10 +79,6 @@ struct Loaded {
     bindings: Vec<wgpu::BindGroup>,
     dispatch: wgpu::Buffer,
     rounds: Rounds,
-}
-
-fn nothing_loaded() -> BackendError {
-    BackendError::Device { kernel: TRAIN.name, message: "no cohort is loaded".to_owned() }
 }
 
 impl GpuBackend {
@@ -190,13 +186,13 @@ impl Backend for GpuBackend {
     fn load(&mut self, cohort: Cohort) -> Result<(), BackendError> {
         // The old cohort's memory is free before the new one's is taken.
         self.loaded = None;
-        self.advance.hold(wanted(&cohort).into_iter().filter(|words| *words <= self.held).collect());
+        self.advance.wanted = wanted(&cohort).into_iter().filter(|words| *words <= self.held).collect();
         let dispatch = self.uniform(TRAIN.name)?;
         let (pipeline, governor) = self.advance.ready(&self.device)?;
         let turns = quantum_turns(&cohort.shared, holders(&cohort, pipeline.held()));
         let most = ceiling(self.verdict.loop_budget, turns);
         governor.set_ceiling(most);
-        self.evaluate.set_ceiling(most);
+        self.evaluate.governor.set_ceiling(most);
         let common = Common::new(&self.device, TRAIN.name, &cohort.shared)?;
         let shards = shards::upload(&self.device, &cohort, self.shard)?;
         let bindings = shards
@@ -322,7 +318,7 @@ impl Backend for GpuBackend {
         let uniform = self.uniform(STEP.name)?;
         let common = Common::new(&self.device, STEP.name, shared)?;
         let most = ceiling(self.verdict.loop_budget, step_turns(shared));
-        self.step.set_ceiling(most);
+        self.step.governor.set_ceiling(most);
         let (pipeline, governor) = self.step.ready(&self.device)?;
         for robots in robots.chunks_mut(dispatch_size::GROUPS as usize) {
             let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;

@@ -8,13 +8,14 @@ use crate::backend::BackendError;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
-/// See the module. Drivers take up to many seconds to compile, so that what cohorts in turn hold is compiled once each.
+/// A kernel in use. Drivers take up to many seconds to compile, so that what cohorts in turn hold is compiled once each.
 #[derive(Debug)]
 pub struct Stage {
     kernel: Kernel,
-    wanted: Vec<u32>,
+    /// Numbers of weights of which the largest that fits is held from the next use on.
+    pub(super) wanted: Vec<u32>,
     pipelines: HashMap<Vec<u32>, Pipeline>,
-    governor: Governor,
+    pub(super) governor: Governor,
 }
 
 impl Stage {
@@ -30,24 +31,14 @@ impl Stage {
     pub fn ready(&mut self, device: &Device) -> Result<(&Pipeline, &mut Governor), BackendError> {
         let pipeline = match self.pipelines.entry(self.wanted.clone()) {
             Entry::Occupied(made) => made.into_mut(),
-            Entry::Vacant(place) => place.insert(Pipeline::holding(device, self.kernel, &self.wanted)?),
+            Entry::Vacant(place) => place.insert(Pipeline::new(device, self.kernel, &self.wanted)?),
         };
         Ok((pipeline, &mut self.governor))
-    }
-
-    /// Numbers of weights of which the largest that fits is held from now on.
-    pub fn hold(&mut self, wanted: Vec<u32>) {
-        self.wanted = wanted;
     }
 
     /// Words of a workgroup's memory that hold weights.
     pub fn held(&self) -> u32 {
         self.pipelines.get(&self.wanted).map_or(0, Pipeline::held)
-    }
-
-    /// Most iterations of a dispatch.
-    pub fn set_ceiling(&mut self, ceiling: u32) {
-        self.governor.set_ceiling(ceiling);
     }
 
     /// Takes another text in place of the kernel of its name.
