@@ -1,4 +1,5 @@
-//! The kinds of work, each done from the same start by every executor, and what it leaves to be compared.
+//! The kinds of work, each done from the same start by every executor, and what it leaves to be compared. Where an error
+//! is returned, the built-in config cannot be read or its teacher fails.
 
 use super::BenchError;
 use super::embedded_configs::{DOCKING, embedded_plan};
@@ -61,9 +62,6 @@ impl BenchSizes {
 }
 
 /// Kernel `step`: robots that carry out each given action `times` times before the next is given.
-///
-/// # Errors
-/// Where the built-in config cannot be read.
 pub fn robot_steps(sizes: BenchSizes, times: u32) -> Result<Benchmark<'static>, BenchError> {
     let walk = RobotWalk::new(sizes.robots)?;
     let rounds = sizes.rounds.div_ceil(times);
@@ -118,9 +116,6 @@ impl UpdateRule {
     }
 
     /// Learners of docking that replay `passes` times over their lessons by this rule, and then stop.
-    ///
-    /// # Errors
-    /// Where the built-in config cannot be read.
     pub fn plan(&self, learners: u32, passes: u32) -> Result<Plan, BenchError> {
         let Self { arm, optimiser, hidden, .. } = self;
         let set = [
@@ -140,9 +135,6 @@ const ADAM_ROWS: &str = "Adam with one second moment a row";
 const SGD: &str = "gradient descent";
 
 /// Kernel `train`: learners of docking as shipped that replay taught lessons by one of the rules.
-///
-/// # Errors
-/// Where the built-in config cannot be read or its teacher fails.
 pub fn transitions(sizes: BenchSizes, rule: UpdateRule) -> Result<Benchmark<'static>, BenchError> {
     let replay = TaughtReplay::new(&rule.plan(sizes.learners, sizes.passes)?)?;
     let UpdateRule { name, hidden, about, .. } = rule;
@@ -171,9 +163,6 @@ pub struct HierarchyLearners {
 
 impl HierarchyLearners {
     /// The arm `hierarchical` of a shipped config with some keys set, with as many seeds as `learners`.
-    ///
-    /// # Errors
-    /// Where the built-in config cannot be read or its teacher fails.
     pub fn new(config: &str, set: &[&str], learners: u32) -> Result<Self, BenchError> {
         let set = [&["arms=[\"hierarchical\"]", "teacher.eval_episodes=1"], set].concat();
         let plan = embedded_plan(config, &set, learners)?;

@@ -84,9 +84,6 @@ fn question(number: u32) -> Question {
 }
 
 /// What the device answers.
-///
-/// # Errors
-/// Where the device fails.
 pub fn ask(device: &Device, questions: &[Question]) -> Result<Vec<Answer>, BackendError> {
     let mut answers = vec![[UNWRITTEN; ANSWER_WORDS]; questions.len()];
     let (asked, answered) = (bytemuck::cast_slice(questions), bytemuck::cast_slice_mut(&mut answers));
@@ -97,12 +94,9 @@ pub fn ask(device: &Device, questions: &[Question]) -> Result<Vec<Answer>, Backe
 /// Lets `groups` workgroups of a kernel with two buffers turn what is asked into answers.
 fn answer(device: &Device, kernel: Kernel, asked: &[u8], answers: &mut [u8], groups: u32) -> Result<(), BackendError> {
     let pipeline = Pipeline::new(device, kernel, &[])?;
-    let buffer = |bytes: &[u8]| {
-        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
-        let buffer = device.buffer(kernel.name, bytes.len() as u64, usage)?;
-        device.upload(kernel.name, &buffer, bytes).map(|()| buffer)
-    };
-    let (asked, answered) = (buffer(asked)?, buffer(answers)?);
+    let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
+    let asked = device.filled(kernel.name, asked, 0, usage)?;
+    let answered = device.filled(kernel.name, answers, 0, usage)?;
     let submission = pipeline.submit(device, &pipeline.bind(device, &[&asked, &answered]), (groups, 1));
     device.wait(kernel.name, Some(submission))?;
     device.download(kernel.name, &answered, answers)

@@ -104,6 +104,21 @@ impl Device {
         self.sound(kernel).map(|()| buffer)
     }
 
+    /// Creates a buffer that begins with these bytes and has room for `least`.
+    ///
+    /// # Errors
+    /// Where the driver has no memory for it.
+    pub fn filled(
+        &self,
+        kernel: &'static str,
+        bytes: &[u8],
+        least: usize,
+        usage: wgpu::BufferUsages,
+    ) -> Result<wgpu::Buffer, BackendError> {
+        let buffer = self.buffer(kernel, bytes.len().max(least) as u64, usage)?;
+        self.upload(kernel, &buffer, bytes).map(|()| buffer)
+    }
+
     /// Waits until a submission is done, or all are. What fails here stays a fault of the device: of other
     /// submissions that are on their way nothing is known then.
     ///
@@ -125,9 +140,6 @@ impl Device {
     }
 
     /// Copies bytes to the start of a buffer.
-    ///
-    /// # Errors
-    /// Where the device fails.
     pub fn upload(&self, kernel: &'static str, buffer: &wgpu::Buffer, bytes: &[u8]) -> Result<(), BackendError> {
         let mut offset = 0;
         for chunk in bytes.chunks(CHUNK as usize) {
@@ -142,9 +154,6 @@ impl Device {
     }
 
     /// Copies the start of a buffer to memory.
-    ///
-    /// # Errors
-    /// Where the device fails.
     pub fn download(&self, kernel: &'static str, buffer: &wgpu::Buffer, into: &mut [u8]) -> Result<(), BackendError> {
         if into.is_empty() {
             return Ok(());

@@ -1,7 +1,8 @@
 //! The GPU backend: the kernels on any adapter of Vulkan, Metal or DX12.
 //!
 //! Learners stay in the device's memory. The host only says how far to go, one dispatch ahead, waits, with a deadline,
-//! and looks at the states now and then.
+//! and looks at the states now and then. A function here that does not say when it returns an error does so where the
+//! device fails.
 
 pub mod adapter;
 pub mod arithmetic_check;
@@ -11,9 +12,9 @@ pub mod dispatch_size;
 pub mod in_flight;
 pub mod loop_limit;
 pub mod pipeline;
-pub mod pipeline_cache;
-pub mod run_evaluation;
-pub mod shards;
+mod pipeline_cache;
+mod run_evaluation;
+mod shards;
 pub mod source;
 pub mod spirv;
 pub mod workgroup_weights;
@@ -322,8 +323,7 @@ impl Backend for GpuBackend {
         let (pipeline, governor) = self.step.ready(&self.device)?;
         for robots in robots.chunks_mut(dispatch_size::GROUPS as usize) {
             let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
-            let buffer = self.device.buffer(STEP.name, size_of_val(robots) as u64, usage)?;
-            self.device.upload(STEP.name, &buffer, bytemuck::cast_slice(robots))?;
+            let buffer = self.device.filled(STEP.name, bytemuck::cast_slice(robots), 0, usage)?;
             let binding = pipeline.bind(&self.device, &[&uniform, &common.world, &common.tables, &buffer]);
             let mut flight = Flight::new(&self.device, (pipeline, governor), &uniform, &mut self.traffic);
             let mut first = 0;

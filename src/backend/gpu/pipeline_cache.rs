@@ -10,7 +10,7 @@ use std::collections::hash_map::Entry;
 
 /// A kernel in use. Drivers take up to many seconds to compile, so that what cohorts in turn hold is compiled once each.
 #[derive(Debug)]
-pub struct Stage {
+pub(super) struct Stage {
     kernel: Kernel,
     /// Numbers of weights of which the largest that fits is held from the next use on.
     pub(super) wanted: Vec<u32>,
@@ -20,7 +20,7 @@ pub struct Stage {
 
 impl Stage {
     /// A kernel whose dispatches have `iterations` iterations, if given.
-    pub fn new(kernel: Kernel, iterations: Option<u32>) -> Self {
+    pub(super) fn new(kernel: Kernel, iterations: Option<u32>) -> Self {
         Self { kernel, wanted: Vec::new(), pipelines: HashMap::new(), governor: Governor::new(iterations, 1) }
     }
 
@@ -28,7 +28,7 @@ impl Stage {
     ///
     /// # Errors
     /// Where the driver refuses it.
-    pub fn ready(&mut self, device: &Device) -> Result<(&Pipeline, &mut Governor), BackendError> {
+    pub(super) fn ready(&mut self, device: &Device) -> Result<(&Pipeline, &mut Governor), BackendError> {
         let pipeline = match self.pipelines.entry(self.wanted.clone()) {
             Entry::Occupied(made) => made.into_mut(),
             Entry::Vacant(place) => place.insert(Pipeline::new(device, self.kernel, &self.wanted)?),
@@ -37,12 +37,12 @@ impl Stage {
     }
 
     /// Words of a workgroup's memory that hold weights.
-    pub fn held(&self) -> u32 {
+    pub(super) fn held(&self) -> u32 {
         self.pipelines.get(&self.wanted).map_or(0, Pipeline::held)
     }
 
     /// Takes another text in place of the kernel of its name.
-    pub fn replace(&mut self, kernel: Kernel) {
+    pub(super) fn replace(&mut self, kernel: Kernel) {
         if self.kernel.name == kernel.name {
             self.kernel = kernel;
             self.pipelines.clear();
