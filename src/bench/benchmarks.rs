@@ -25,7 +25,7 @@ pub struct Measurement {
 }
 
 /// Does the work of one sample; none where this executor would take too long.
-type Run<'a> = dyn Fn(&mut Executor, u32) -> Result<Option<Measurement>, BenchError> + 'a;
+type BenchRun<'a> = dyn Fn(&mut Executor, u32) -> Result<Option<Measurement>, BenchError> + 'a;
 
 /// A kind of work.
 pub struct Benchmark<'a> {
@@ -34,7 +34,7 @@ pub struct Benchmark<'a> {
     /// What a unit is.
     pub about: String,
     /// Does it.
-    pub run: Box<Run<'a>>,
+    pub run: Box<BenchRun<'a>>,
 }
 
 /// How much of everything.

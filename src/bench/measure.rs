@@ -15,30 +15,26 @@ const CARD_LEARNERS: u32 = 1024;
 /// Times that an action is carried out where the host is to be out of the way.
 const REPEATS: u32 = 8;
 
-/// What to measure.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct BenchOptions {
-    /// On whom.
-    pub executors: ExecutorSet,
-    /// Samples of everything.
-    pub samples: u32,
-    /// Whole learners to train on each executor; 0 for none. As many as the CPU has cores, and a graphics card room,
-    /// if not given.
-    pub learners: Option<u32>,
-}
-
-/// Measures everything. `note` is told what is being measured, `command` is kept in the report.
+/// Measures everything, `samples` times each. `learners` are the whole learners to train on each executor, 0 for none; as
+/// many as the CPU has cores, and a graphics card room, if not given. `note` is told what is being measured, `command` is
+/// kept in the report.
 ///
 /// # Errors
 /// [`BenchError::Differs`] where two executors leave different bytes; else where one fails.
-pub fn bench(options: BenchOptions, command: &str, note: &mut dyn FnMut(&str)) -> Result<BenchReport, BenchError> {
+pub fn bench(
+    executors: ExecutorSet,
+    samples: u32,
+    learners: Option<u32>,
+    command: &str,
+    note: &mut dyn FnMut(&str),
+) -> Result<BenchReport, BenchError> {
     let origin = BenchOrigin::new(command);
-    let (mut executors, mut left_out) = open_executors(options.executors)?;
+    let (mut executors, mut left_out) = open_executors(executors)?;
     let has = |kind| executors.iter().any(|executor| executor.info.kind == kind);
     let (card, software) = (has(ExecutorKind::Gpu), has(ExecutorKind::SoftwareGpu));
     let sizes = if card { BenchSizes::CARD } else { BenchSizes::CPU };
-    let on_cpu = options.learners.unwrap_or(cores() as u32);
-    let on_card = options.learners.unwrap_or(if card { CARD_LEARNERS } else { 0 });
+    let on_cpu = learners.unwrap_or(cores() as u32);
+    let on_card = learners.unwrap_or(if card { CARD_LEARNERS } else { 0 });
     let most = on_cpu.max(on_card);
     let hierarchy = HierarchyLearners::new(HIERARCHY, &[], sizes.learners.max(most))?;
     let lean = if most > 0 { Some(HierarchyLearners::new(THRESHOLDS, &ONE_POINT, most)?) } else { None };
@@ -57,12 +53,12 @@ pub fn bench(options: BenchOptions, command: &str, note: &mut dyn FnMut(&str)) -
     let mut tasks = Vec::new();
     for benchmark in &benchmarks {
         note(&format!("{}: {}", benchmark.name, benchmark.about));
-        tasks.push(measure(benchmark, &mut executors, options.samples)?);
+        tasks.push(measure(benchmark, &mut executors, samples)?);
     }
     Ok(BenchReport {
         format: FORMAT,
         origin,
-        samples: options.samples,
+        samples,
         executors: executors.into_iter().map(|executor| executor.info).collect(),
         left_out,
         tasks,

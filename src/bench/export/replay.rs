@@ -1,6 +1,6 @@
 //! Tensors of `replay.safetensors`.
 
-use super::tensor::ExportFile;
+use super::tensor::ExportTensors;
 use crate::backend::Cohort;
 use crate::bench::benchmarks::UpdateRule;
 use crate::bench::executor::open_cpu;
@@ -31,7 +31,7 @@ const EXPECTED: [&str; 4] =
     ["after all passes over the lessons", "after all passes", "after all passes", "after all passes"];
 
 /// What the learners learn from and what becomes of their nets, the same by every executor on the CPU.
-pub(super) fn replay(learners: u32) -> Result<ExportFile, BenchError> {
+pub(super) fn replay(learners: u32) -> Result<ExportTensors, BenchError> {
     let replay = TaughtReplay::new(&UpdateRule::ALL[0].plan(learners, PASSES)?)?;
     let (skill, shared, params) = (*replay.skill(), &replay.cohort.shared, *replay.params(0));
     let (bank, steps, inputs) = (skill.bank_lessons as usize, params.max_steps as usize, skill.inputs as usize);
@@ -59,7 +59,7 @@ pub(super) fn replay(learners: u32) -> Result<ExportFile, BenchError> {
         .map(|word| (word / skill.lesson_stride as usize) as i32)
         .collect();
     let once = TaughtReplay::new(&UpdateRule::ALL[0].plan(learners, 1)?)?;
-    let mut file = ExportFile::default();
+    let mut file = ExportTensors::default();
     let lessons = params.lessons as usize;
     file.add("lesson.length", "", "steps of each lesson in the bank", &[bank], &length);
     let meaning = "encoded observation before each step; 0 beyond the length";

@@ -1,6 +1,6 @@
 //! Tensors of `simulate.safetensors`.
 
-use super::tensor::ExportFile;
+use super::tensor::ExportTensors;
 use crate::bench::executor::open_cpu;
 use crate::bench::robot_walk::RobotWalk;
 use crate::bench::{BenchError, compare};
@@ -51,7 +51,7 @@ impl StepNoise {
 }
 
 /// The robots' inputs and what they read after each step, the same by every executor on the CPU.
-pub(super) fn robot_steps() -> Result<ExportFile, BenchError> {
+pub(super) fn robot_steps() -> Result<ExportTensors, BenchError> {
     let mut walk = RobotWalk::new(ROBOTS)?;
     let mut executors = open_cpu()?;
     let floor = walk.shared.floor.plan;
@@ -88,7 +88,7 @@ pub(super) fn robot_steps() -> Result<ExportFile, BenchError> {
     let light: Vec<u8> = sensed.iter().flat_map(|(_, values)| values.light).collect();
     let compass: Vec<f32> = sensed.iter().map(|(_, values)| values.compass).collect();
 
-    let mut file = ExportFile::default();
+    let mut file = ExportTensors::default();
     let (robots, steps) = (ROBOTS as usize, STEPS as usize);
     let (each, rays) = ([steps, robots], [steps, robots, RAYS]);
     file.add("start", "in, in, degree", "x, y, heading before the first step", &[robots, 3], &start);

@@ -40,12 +40,12 @@ struct ExportTensor {
 
 /// The tensors of a file, and the numbers that are none.
 #[derive(Default)]
-pub(super) struct ExportFile {
+pub(super) struct ExportTensors {
     tensors: Vec<ExportTensor>,
     pub(super) numbers: Value,
 }
 
-impl ExportFile {
+impl ExportTensors {
     pub(super) fn add<T: TensorElement>(
         &mut self,
         name: &str,
