@@ -37,9 +37,10 @@
 //!   The plain twins are a backend of their own, `--backend reference`. A test compares names, comments and statements.
 //! - The **shader**: both languages share one memory layout, [`layout`], from which the constants and structs of WGSL are
 //!   emitted.
-//! - The **tuned forms** of the five functions that take the time ([`env::workgroup::HotForms`]: draws, observation,
-//!   motion, forward, backward) and of kernel `step` stand in [`backend::cpu::lanes`], are compiled for each instruction
-//!   set, and may be as clever as they like. All else runs the plain twins there too.
+//! - The **tuned forms** of the functions that take the time ([`env::workgroup::HotForms`]: draws, observation, motion,
+//!   encoding, forward, odds, backward) and of kernel `step` are compiled for each instruction set. Encoding and odds are the
+//!   plain twins; the others stand in [`backend::cpu::lanes`] and may be as clever as they like. All else runs the plain
+//!   twins there too.
 //!
 //! Results are built from IEEE f32 `+ - *`, comparisons and integers alone ([`math`]), random numbers are counters
 //! ([`math::rng`]), and on Vulkan the SPIR-V is decorated so that no compiler fuses or re-associates. Hence all forms
