@@ -32,6 +32,23 @@ pub fn is_group(first: &str) -> bool {
     all().any(|key| key.path.split('.').next() == Some(first))
 }
 
+/// Whether a row's path, in which `*` stands for any name, is this one. What lies below an arm, a point of a sweep or a
+/// skill is named as it is elsewhere.
+pub(super) fn is(row: &str, path: &[&str]) -> bool {
+    let same = |path: &[&str]| {
+        let parts = row.split('.');
+        parts.clone().count() == path.len() && parts.zip(path).all(|(part, name)| part == "*" || part == *name)
+    };
+    let below_skill = |path: &[&str]| match path {
+        ["skill", _, learning @ ..] if learning.first() == Some(&"learning") => same(path) || same(learning),
+        _ => same(path),
+    };
+    match path {
+        ["arm", _, inner @ ..] | ["sweep", inner @ ..] => below_skill(path) || below_skill(inner),
+        _ => below_skill(path),
+    }
+}
+
 const TEXT: &[&str] = &["string"];
 const LIST: &[&str] = &["array"];
 const TABLE: &[&str] = &["object"];

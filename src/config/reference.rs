@@ -54,21 +54,7 @@ fn holds(text: &str, pattern: &str) -> bool {
 }
 
 fn matches(row: &KeyRow, pattern: &str) -> bool {
-    // What lies below an arm, a point of a sweep or a skill is named as it is elsewhere.
-    let inner = |path: &str| {
-        let names: Vec<&str> = path.split('.').collect();
-        let parts: Vec<&str> = row.path.split('.').collect();
-        let same = |names: &[&str]| {
-            parts.len() == names.len() && parts.iter().zip(names).all(|(part, name)| *part == "*" || part == name)
-        };
-        match names[..] {
-            ["skill", _, "learning", ..] => same(&names[2..]),
-            _ => same(&names),
-        }
-    };
-    let arm = pattern.strip_prefix("arm.").and_then(|rest| rest.split_once('.')).map(|(_, rest)| rest);
-    let paths = [Some(pattern), arm, pattern.strip_prefix("sweep.")];
-    holds(row.path, pattern) || holds(row.doc, pattern) || paths.into_iter().flatten().any(inner)
+    holds(row.path, pattern) || holds(row.doc, pattern) || keys::is(row.path, &pattern.split('.').collect::<Vec<_>>())
 }
 
 /// A JSON schema of config files, for editors that complete and check TOML.

@@ -11,11 +11,11 @@ use crate::layout::params::{ALWAYS, MAX_TRIALS};
 use crate::layout::{EVENTS, HyperParams, MAX_CHILDREN, MAX_STARTS};
 use crate::toml::document::{Node, Value};
 use crate::toml::error::{ConfigError, suggest};
-use crate::toml::reader::{Item, KeyedTable};
+use crate::toml::reader::{Item, TableReader};
 use crate::world::World;
 
 /// What the skills of an arm are read with, besides their own tables.
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct SkillReader<'a> {
     /// What `skill.NAME.learning` lies over.
     pub(super) learning: Option<&'a Node>,
@@ -30,25 +30,26 @@ pub(super) struct SkillReader<'a> {
     pub(super) eval_at: &'a [u32],
     /// The arm's skills, by their places in the file.
     pub(super) order: &'a [usize],
+    pub(super) unused: &'a UnusedKeys,
 }
 
 impl SkillReader<'_> {
     /// Reads a skill that is no mirror image.
-    pub(super) fn skill(&self, link: &Link<'_>, unused: &mut UnusedKeys) -> Result<SkillPlan, ConfigError> {
+    pub(super) fn skill(&self, link: &Link<'_>) -> Result<SkillPlan, ConfigError> {
         let (cached, world) = (self.cached, self.cached.map(|cached| cached.world));
-        let section = KeyedTable(link.item.table()?);
+        let section = link.item.table()?;
         let asked = section.required(&keys::SKILL_INPUTS, "[\"sonar\", \"light\", \"bumpers\"]")?;
         let inputs = inputs::read(&asked, world)?;
         // These two are in the link already.
-        section.0.optional(keys::SKILL_CHILDREN.name());
-        section.0.optional(keys::SKILL_MIRROR.name());
-        let applicable = children::applicable(&section.required(&keys::SKILL_APPLICABLE, "{}")?, &link.children)?;
-        let starts = starts(&section.required(&keys::SKILL_STARTS, "\"anywhere\"")?, cached)?;
-        let tests = section.required(&keys::SKILL_EVAL_STARTS, "\"anywhere\"")?;
+        section.optional(&keys::SKILL_CHILDREN);
+        section.optional(&keys::SKILL_MIRROR);
+        let applicable = children::applicable(&section.value(&keys::SKILL_APPLICABLE)?, &link.children)?;
+        let starts = starts(&section.value(&keys::SKILL_STARTS)?, cached)?;
+        let tests = section.value(&keys::SKILL_EVAL_STARTS)?;
         let eval_starts = region(tests.text()?, &|message, hint| tests.error(message, hint), cached)?;
-        let goal = goal(&section.required(&keys::SKILL_GOAL, "[\"docked\"]")?, world)?;
+        let goal = goal(&section.value(&keys::SKILL_GOAL)?, world)?;
         let oracle = oracle(&section, link)?;
-        let mut params = self.learning(&section, &link.item, unused)?;
+        let mut params = self.learning(&section, &link.item)?;
         section.fill("skill.*.", HyperParams::rows(), &mut params)?;
         params.reward = reward(&section.required(&keys::SKILL_REWARD, "{ docked = 100, collision = -10 }")?, world)?;
         params.threshold = [ALWAYS; MAX_CHILDREN];
@@ -81,25 +82,25 @@ impl SkillReader<'_> {
         if skill.params.mirror_replays == 1 {
             mirror::check_replays(&skill, &self.mirror_replays(&link.item))?;
         }
-        section.0.finish()?;
+        section.finish()?;
         Ok(skill)
     }
 
     /// Checks the table of a mirror image for misspelt keys. They are what the skill is where an arm says
     /// `mirror = false`; until then `eval_at` alone is used, and returned if it is there.
-    pub(super) fn unused(&self, link: &Link<'_>, unused: &mut UnusedKeys) -> Result<Option<Vec<u32>>, ConfigError> {
-        let section = KeyedTable(link.item.table()?);
+    pub(super) fn unused(&self, link: &Link<'_>) -> Result<Option<Vec<u32>>, ConfigError> {
+        let section = link.item.table()?;
         for key in keys::all().filter(|key| key.path.starts_with("skill.*.")) {
-            section.0.optional(key.name());
+            section.optional(key);
         }
-        self.learning(&section, &link.item, unused)?;
+        self.learning(&section, &link.item)?;
         let eval_at = self.eval_at(&section)?;
-        section.0.finish()?;
+        section.finish()?;
         Ok(eval_at)
     }
 
-    fn eval_at(&self, section: &KeyedTable<'_>) -> Result<Option<Vec<u32>>, ConfigError> {
-        section.0.optional(keys::SKILL_EVAL_AT.name()).map(|item| item.ascending(MAX_TRIALS)).transpose()
+    fn eval_at(&self, section: &TableReader<'_>) -> Result<Option<Vec<u32>>, ConfigError> {
+        section.optional(&keys::SKILL_EVAL_AT).map(|item| item.ascending(MAX_TRIALS)).transpose()
     }
 
     /// The place of a skill among the arm's own; below a skill that the arm does not train it has none, and stays.
@@ -114,8 +115,8 @@ impl SkillReader<'_> {
         }
     }
 
-    fn check_lessons(&self, lessons: u32, section: &KeyedTable<'_>, link: &Link<'_>) -> Result<(), ConfigError> {
-        let item = section.0.required("lessons", "10")?;
+    fn check_lessons(&self, lessons: u32, section: &TableReader<'_>, link: &Link<'_>) -> Result<(), ConfigError> {
+        let item = section.required("lessons", "10")?;
         if lessons > 0 && link.skills().next().is_some() {
             let message = format!("`{}` cannot have lessons: nobody demonstrates skills", link.name);
             return Err(item.error(message, "set lessons = 0; the skills that it chooses among can be taught"));
@@ -128,29 +129,24 @@ impl SkillReader<'_> {
     }
 
     /// The numbers of learning, with those of the robot; all others are 0.
-    fn learning(
-        &self,
-        section: &KeyedTable<'_>,
-        skill: &Item<'_>,
-        unused: &mut UnusedKeys,
-    ) -> Result<HyperParams, ConfigError> {
+    fn learning(&self, section: &TableReader<'_>, skill: &Item<'_>) -> Result<HyperParams, ConfigError> {
         let mut merged = self.learning.cloned().unwrap_or_else(|| Node::empty(skill.origin().clone()));
-        let over = section.0.optional("learning");
+        let over = section.optional("learning");
         if let Some(over) = &over {
             over.table()?;
             merged.merge(over.node.clone());
         }
         let name = over.map_or_else(|| "learning".to_owned(), |over| over.name);
-        let section = KeyedTable(Item { name, node: &merged }.table()?);
+        let section = (Item { name, node: &merged }).table()?;
         let mut params = self.robot;
         section.fill("learning.", HyperParams::rows(), &mut params)?;
-        unused.note(&section, params.optimiser)?;
-        let unset = section.0.optional("learning_rate").is_none_or(|item| item.origin().is_default());
+        self.unused.note(&section, params.optimiser)?;
+        let unset = section.optional("learning_rate").is_none_or(|item| item.origin().is_default());
         if params.optimiser == OPTIMISER_SGD && unset {
-            let chosen = section.0.required("optimiser", "\"sgd\"")?;
+            let chosen = section.required("optimiser", "\"sgd\"")?;
             return Err(chosen.error("sgd has no default learning rate", "add `learning_rate = 0.15` beside it"));
         }
-        section.0.finish()?;
+        section.finish()?;
         params.derive();
         Ok(params)
     }
@@ -166,8 +162,8 @@ impl<'a> SkillReader<'a> {
     }
 }
 
-fn oracle(section: &KeyedTable<'_>, link: &Link<'_>) -> Result<bool, ConfigError> {
-    let item = section.required(&keys::SKILL_ORACLE, "false")?;
+fn oracle(section: &TableReader<'_>, link: &Link<'_>) -> Result<bool, ConfigError> {
+    let item = section.value(&keys::SKILL_ORACLE)?;
     let oracle = item.flag()?;
     if oracle && link.skills().next().is_some() {
         let message = format!("`{}` chooses among skills and cannot be an oracle", link.name);

@@ -107,16 +107,22 @@ impl<'a> Worlds<'a> {
         names.find(|name| !taken(name)).unwrap_or_default()
     }
 
-    /// Gives the worlds in a table of arms or alterations the names that they have in a run folder.
-    pub(super) fn rename(&mut self, group: &mut Node) -> Result<(), ConfigError> {
-        let Value::Table(entries) = &mut group.value else { return Ok(()) };
-        for entry in entries {
-            let Some(node) = entry.node.get(keys::WORLD.name()) else { continue };
-            let index = self.place(&Item { name: keys::WORLD.name().to_owned(), node })?;
-            let file = Value::Text(self.placed[index].file.clone());
-            let renamed = Node { value: file, origin: node.origin.clone() };
-            entry.node.put(keys::WORLD.name(), renamed);
+    /// Gives worlds the names that they have in a run folder, wherever a key `world` names them; `named` tells whether
+    /// this is the value of one.
+    pub(super) fn rename(&self, node: &mut Node, named: bool) {
+        match &mut node.value {
+            Value::Table(entries) => entries.iter_mut().for_each(|entry| {
+                // An axis may have its values in a table, beside a label.
+                let named = entry.key == keys::WORLD.name() || named && entry.key == "values";
+                self.rename(&mut entry.node, named);
+            }),
+            Value::List(items) if named => items.iter_mut().for_each(|item| self.rename(item, true)),
+            Value::Text(text) if named => {
+                if let Some(index) = self.named.get(text) {
+                    text.clone_from(&self.placed[*index].file);
+                }
+            }
+            _ => {}
         }
-        Ok(())
     }
 }

@@ -117,7 +117,7 @@ pub(super) fn door(
 pub(super) fn check(world: &World, written: &Written, whole: &SourceSpan) -> Result<(), ConfigError> {
     if world.rooms.is_empty() {
         let hint = "add [[rooms]] with name = \"A\" and box = [0, 0, 360, 420]";
-        return Err(whole.file_error("the world has no rooms", hint));
+        return Err(whole.error("the world has no rooms", hint));
     }
     doors(world, written)?;
     light(world, written)?;
@@ -130,7 +130,7 @@ pub(super) fn check(world: &World, written: &Written, whole: &SourceSpan) -> Res
     }
     if world.region_is_empty(super::regions::ANYWHERE) != Some(false) {
         let hint = "no room has a spot that is 14 inches from everything solid; make rooms larger or remove boxes";
-        return Err(whole.file_error("the world has no free space", hint));
+        return Err(whole.error("the world has no free space", hint));
     }
     Ok(())
 }
