@@ -6,7 +6,6 @@ mod console;
 mod devices;
 mod error;
 mod keys;
-mod parity;
 mod preview;
 mod probe;
 mod progress;

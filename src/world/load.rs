@@ -1,6 +1,6 @@
 //! A world file's text -> a checked [`World`]. All lengths are inches, all angles degrees.
 
-use super::check::{self, Written};
+use super::check::{self, DoorItems, Written};
 use super::keys;
 use super::solids::{self, holds};
 use super::{Charger, Door, Light, Pose, Rect, Room, World};
@@ -151,10 +151,10 @@ fn doors(root: &TableReader<'_>, rooms: &[Room], written: &mut Written) -> Resul
         let centre = table.required("centre", "[64, 204]")?;
         let at = Vec2::from_array(centre.numbers::<2>("[x, y] in inches")?);
         let width = table.required("width", "50")?;
-        let door = check::door(name, rooms, joined, (at, table.number(&keys::DOOR_WIDTH)?));
-        let door = door.map_err(|fault| fault.place(&pair, &centre, &width))?;
-        written.doors.push(centre.origin().clone());
-        doors.push(door);
+        let origin = centre.origin().clone();
+        let items = DoorItems { rooms: pair, centre, width };
+        doors.push(check::door(name, rooms, joined, (at, table.number(&keys::DOOR_WIDTH)?), &items)?);
+        written.doors.push(origin);
         table.finish()?;
     }
     Ok(doors)
@@ -190,10 +190,7 @@ fn places(root: &TableReader<'_>, floor: &Rect, written: &mut Written) -> Result
         if !holds(floor, Vec2::new(x, y)) {
             return Err(outside(&item, floor));
         }
-        let turned = heading.rem_euclid(360.0);
-        // A tiny negative heading rounds up to a full turn.
-        let heading = if turned < 360.0 { turned } else { 0.0 };
-        places.push((entry.key.clone(), Pose { x, y, heading }));
+        places.push((entry.key.clone(), Pose::new(x, y, heading)));
         written.places.push(item.origin().clone());
     }
     Ok(places)
