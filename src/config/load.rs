@@ -11,7 +11,7 @@ use super::unused_keys::UnusedKeys;
 use super::worlds::Worlds;
 use super::{arms, renamed, seeds, set, sweep, transfer};
 use crate::layout::params::MAX_TRIALS;
-use crate::toml::document::{Node, SWEEP, SourceSpan, SourceText, Value};
+use crate::toml::document::{Node, SWEEP, SourceSpan, Value};
 use crate::toml::error::ConfigError;
 use crate::toml::printer;
 use crate::toml::reader::{Item, TableReader};
@@ -39,8 +39,7 @@ impl Overrides {
         for argument in &self.set {
             set::apply(tree, argument)?;
         }
-        let typed =
-            |value: Value, argument: String| Node { value, origin: SourceSpan::whole(SourceText::Argument(argument)) };
+        let typed = |value: Value, argument: String| Node { value, origin: SourceSpan::Argument(argument) };
         if let Some(text) = &self.seeds {
             tree.put(keys::SEEDS.name(), Node::text(text, &seeds::argument(text)));
         }
@@ -145,7 +144,7 @@ fn read(files: &dyn Files, path: &Path) -> Result<Node, ConfigError> {
 
 /// The tree of all defaults, with one table for each skill of the file, in its order.
 fn defaults(tree: &Node) -> Result<Node, ConfigError> {
-    let mut out = Node::empty(SourceSpan::whole(SourceText::Default("the whole config")));
+    let mut out = Node::empty(SourceSpan::Default("the whole config"));
     for key in keys::all() {
         let Some(text) = key.default else { continue };
         let parts: Vec<&str> = key.path.split('.').collect();
@@ -162,7 +161,7 @@ fn defaults(tree: &Node) -> Result<Node, ConfigError> {
 }
 
 fn default(key: &KeyRow, text: &str, path: &[&str]) -> Result<Node, ConfigError> {
-    let origin = SourceSpan::whole(SourceText::Default(key.path));
+    let origin = SourceSpan::Default(key.path);
     // A test reads every default; a broken one is still reported and not a panic.
     let broken = || origin.error(format!("`{text}` is not TOML"), "please report this");
     Ok(Node::parse_value(text, &origin)?.ok_or_else(broken)?.under(path))

@@ -1,6 +1,6 @@
 //! Lists of seeds, as typed.
 
-use crate::toml::document::{SourceSpan, SourceText, Value};
+use crate::toml::document::{SourceSpan, Value};
 use crate::toml::error::ConfigError;
 use crate::toml::reader::Item;
 
@@ -15,7 +15,7 @@ pub fn parse_seeds(text: &str) -> Result<Vec<u32>, ConfigError> {
 
 /// The option on the command line.
 pub(super) fn argument(text: &str) -> SourceSpan {
-    SourceSpan::whole(SourceText::Argument(format!("--seeds {text}")))
+    SourceSpan::Argument(format!("--seeds {text}"))
 }
 
 /// Reads the value of the key `seeds`: text as above, or a list of whole numbers.

@@ -1,6 +1,6 @@
 //! `--set a.b=v`: values that the command line lays over a config file.
 
-use crate::toml::document::{Node, SourceSpan, SourceText};
+use crate::toml::document::{Node, SourceSpan};
 use crate::toml::error::{ConfigError, suggest};
 use crate::toml::reader::is_name;
 
@@ -8,7 +8,7 @@ const SHAPE: &str = "write --set key=value, such as --set learning.learning_rate
 
 /// Lays one `--set` over the tree. It may not invent skills, arms or transfers.
 pub(super) fn apply(tree: &mut Node, argument: &str) -> Result<(), ConfigError> {
-    let origin = SourceSpan::whole(SourceText::Argument(format!("--set {argument}")));
+    let origin = SourceSpan::Argument(format!("--set {argument}"));
     let Some((path, value)) = argument.split_once('=') else { return Err(origin.error("there is no `=`", SHAPE)) };
     let keys: Vec<&str> = path.split('.').map(str::trim).collect();
     if !keys.iter().all(|key| is_name(key)) {

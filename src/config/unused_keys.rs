@@ -26,7 +26,7 @@ impl UnusedKeys {
             let same = default == Some(section.word(&row.key)?);
             let used = same || *sgd == (optimiser == OPTIMISER_SGD);
             let mut found = self.0.borrow_mut();
-            match found.iter_mut().find(|(name, node, _)| *name == item.name && node.origin.is(item.origin())) {
+            match found.iter_mut().find(|(name, node, _)| *name == item.name && node.origin == *item.origin()) {
                 Some((_, _, once)) => *once |= used,
                 None => found.push((item.name, item.node.clone(), used)),
             }

@@ -28,8 +28,7 @@ pub(super) struct Worlds<'a> {
 }
 
 /// Whether regions of a world are empty, as far as it was asked: looking takes long, and sweeps ask thousands of times.
-#[derive(Debug, Default)]
-struct RegionCache(RefCell<BTreeMap<String, Option<bool>>>);
+type RegionCache = RefCell<BTreeMap<String, Option<bool>>>;
 
 /// A floor plan against which skills are held.
 #[derive(Debug, Clone, Copy)]
@@ -42,12 +41,8 @@ pub(super) struct CachedWorld<'a> {
 impl CachedWorld<'_> {
     /// As [`World::region_is_empty`].
     pub(super) fn region_is_empty(&self, name: &str) -> Option<bool> {
-        if let Some(known) = self.regions.0.borrow().get(name) {
-            return *known;
-        }
-        let empty = self.world.region_is_empty(name);
-        self.regions.0.borrow_mut().insert(name.to_owned(), empty);
-        empty
+        let mut known = self.regions.borrow_mut();
+        *known.entry(name.to_owned()).or_insert_with(|| self.world.region_is_empty(name))
     }
 }
 

@@ -12,54 +12,46 @@ const WHOLE: [&str; 2] = ["starts", "applicable"];
 /// The table whose keys stand for those of the rest: there, each member of [`WHOLE`] tables is an axis of its own.
 pub(crate) const SWEEP: &str = "sweep";
 
-/// A text that values come from.
-#[derive(Debug)]
-pub(crate) enum SourceText {
-    /// A file.
-    File { path: PathBuf, text: String },
+/// Where a key or value was written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum SourceSpan {
+    /// These bytes of a file, or all of it.
+    File(Arc<SourceFile>, Option<Range<usize>>),
     /// A command line argument, whole.
     Argument(String),
     /// The default of the key with this path.
     Default(&'static str),
 }
 
-/// Where a key or value was written.
-#[derive(Debug, Clone)]
-pub(crate) struct SourceSpan {
-    source: Arc<SourceText>,
-    /// Bytes of a file; none for the whole text.
-    span: Option<Range<usize>>,
+/// A file that was read.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) struct SourceFile {
+    path: PathBuf,
+    text: String,
 }
 
 impl SourceSpan {
-    /// All of a text.
-    pub(crate) fn whole(source: SourceText) -> Self {
-        Self { source: Arc::new(source), span: None }
-    }
-
     fn part(&self, span: Range<usize>) -> Self {
-        Self { source: Arc::clone(&self.source), span: Some(span) }
+        match self {
+            Self::File(file, _) => Self::File(Arc::clone(file), Some(span)),
+            other => other.clone(),
+        }
     }
 
     /// A complaint about this place.
     pub(crate) fn error(&self, message: impl Into<String>, hint: impl Into<String>) -> ConfigError {
-        let place = match (&*self.source, &self.span) {
-            (SourceText::File { path, text }, Some(span)) => Place::of_span(path, text, span),
-            (SourceText::File { path, .. }, None) => Place::File(path.clone()),
-            (SourceText::Argument(argument), _) => Place::Argument(argument.clone()),
-            (SourceText::Default(path), _) => Place::Argument(format!("the default of {path}")),
+        let place = match self {
+            Self::File(file, Some(span)) => Place::of_span(&file.path, &file.text, span),
+            Self::File(file, None) => Place::File(file.path.clone()),
+            Self::Argument(argument) => Place::Argument(argument.clone()),
+            Self::Default(path) => Place::Argument(format!("the default of {path}")),
         };
         ConfigError::new(place, message, hint)
     }
 
-    /// Whether nobody wrote this: it is a default.
+    /// Whether nobody wrote this.
     pub(crate) fn is_default(&self) -> bool {
-        matches!(&*self.source, SourceText::Default(_))
-    }
-
-    /// Whether the two are one place, not only equal text.
-    pub(crate) fn is(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.source, &other.source) && self.span == other.span
+        matches!(self, Self::Default(_))
     }
 
     fn replace_default(&mut self, other: Self) {
@@ -98,7 +90,8 @@ pub(crate) struct KeyValue {
 impl Node {
     /// Reads a whole file's text.
     pub(crate) fn parse(text: &str, path: &Path) -> Result<Self, ConfigError> {
-        let whole = SourceSpan::whole(SourceText::File { path: path.to_owned(), text: text.to_owned() });
+        let file = SourceFile { path: path.to_owned(), text: text.to_owned() };
+        let whole = SourceSpan::File(Arc::new(file), None);
         let document = DeTable::parse(text).map_err(|error| {
             let message = format!("not valid TOML: {}", error.message());
             let hint = "text needs quotes, lists need commas; https://toml.io has the rules";
