@@ -1,11 +1,11 @@
 //! `skilltree run`: trains, evaluates, records, reports.
 
-use super::backend::BackendArguments;
 use super::console::{print, tell};
 use super::error::{CliError, exit_codes};
 use super::progress::RunProgress;
 use super::signals::Signals;
 use super::{preview, report};
+use crate::backend::open::BackendOptions;
 use crate::config::Overrides;
 use crate::experiment::Experiment;
 use crate::run_folder::file_system::{Disk, FileSystem};
@@ -48,7 +48,7 @@ pub(super) struct RunArguments {
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
     #[command(flatten)]
-    backend: BackendArguments,
+    backend: BackendOptions,
     /// Learners that train together and are saved together; chosen to suit the backend if not given.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     cohort: Option<u32>,
@@ -81,7 +81,10 @@ pub(super) fn run(arguments: &RunArguments) -> Result<(), CliError> {
         tell(&format!("{} is complete: nothing is left to run", out.display()));
         return conclude(&out);
     }
-    let mut backend = arguments.backend.open()?;
+    let mut backend = arguments.backend.open(&mut |reason| {
+        let reason = reason.to_string();
+        tell(&format!("no exact GPU, so the CPU it is: {}", reason.lines().next().unwrap_or_default()));
+    })?;
     let groups = groups(plan)?;
     let options =
         Options { cohort: arguments.cohort.map(|cohort| cohort as usize), checkpoint: Some(arguments.checkpoint) };

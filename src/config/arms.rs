@@ -9,7 +9,6 @@ use super::{hierarchy, keys};
 use crate::toml::document::{KeyValue, Node};
 use crate::toml::error::{ConfigError, list, nearest, suggest};
 use crate::toml::reader::{Item, TableReader, is_name};
-use std::collections::BTreeSet;
 
 /// Name of the only arm of a config that has no `[arm.NAME]`.
 const BASE: &str = "base";
@@ -152,15 +151,6 @@ pub(super) fn small_name(entry: &KeyValue, what: &str) -> Result<(), ConfigError
 /// Indices of the chosen arms, in the order of the file; all if none is.
 fn select(names: &[&str], chosen: Option<&Item<'_>>) -> Result<Vec<usize>, ConfigError> {
     let Some(chosen) = chosen else { return Ok((0..names.len()).collect()) };
-    let mut wanted = BTreeSet::new();
-    for item in chosen.items()? {
-        let at = item.choice("arms", names)?;
-        if !wanted.insert(at) {
-            return Err(item.error(format!("the arm `{}` is there twice", names[at]), "name each once"));
-        }
-    }
-    if wanted.is_empty() {
-        return Err(chosen.error("no arm is chosen", format!("choose among {}, or leave `arms` out", list(names))));
-    }
-    Ok(wanted.into_iter().collect())
+    let hint = format!("choose among {}, or leave `arms` out", list(names));
+    chosen.chosen("arm", &hint, |item| item.choice("arms", names).map(|at| (at, format!("`{}`", names[at]))))
 }

@@ -3,7 +3,7 @@
 use super::keys::{self, Allowed, DefaultSource, KeyRow};
 use crate::layout::{Action, Event, Input};
 use crate::world;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 use std::fmt::Write;
 
 /// The keys that match a pattern, in words; all without one. A pattern is part of a path or of a sentence, in any case,
@@ -120,33 +120,25 @@ fn insert(node: &mut Value, path: &[&str], leaf: Value) {
 }
 
 fn leaf(row: &KeyRow) -> Value {
-    let mut out = Map::new();
-    match row.allowed {
+    let mut out = match row.allowed {
         Allowed::Number(bounds) => {
-            out.insert("type".to_owned(), json!("number"));
             let low = if bounds.open_low { "exclusiveMinimum" } else { "minimum" };
             let high = if bounds.open_high { "exclusiveMaximum" } else { "maximum" };
-            out.insert(low.to_owned(), json!(bounds.low));
-            out.insert(high.to_owned(), json!(bounds.high));
+            json!({ "type": "number", (low): bounds.low, (high): bounds.high })
         }
-        Allowed::Whole(low, high) => {
-            out.insert("type".to_owned(), json!("integer"));
-            out.insert("minimum".to_owned(), json!(low));
-            out.insert("maximum".to_owned(), json!(high));
-        }
-        Allowed::Flag => drop(out.insert("type".to_owned(), json!("boolean"))),
-        Allowed::Choice(words) => drop(out.insert("enum".to_owned(), json!(words))),
-        Allowed::Other(types, _) => drop(out.insert("type".to_owned(), json!(types))),
-    }
-    let said = match row.allowed {
-        Allowed::Other(_, words) => format!("{} ({words})", row.doc.trim()),
-        _ => row.doc.trim().to_owned(),
+        Allowed::Whole(low, high) => json!({ "type": "integer", "minimum": low, "maximum": high }),
+        Allowed::Flag => json!({ "type": "boolean" }),
+        Allowed::Choice(words) => json!({ "enum": words }),
+        Allowed::Other(types, _) => json!({ "type": types }),
     };
-    out.insert("description".to_owned(), json!(said));
+    out["description"] = match row.allowed {
+        Allowed::Other(_, words) => json!(format!("{} ({words})", row.doc.trim())),
+        _ => json!(row.doc.trim()),
+    };
     let parsed = row.default.and_then(|text| toml::from_str::<toml::Table>(&format!("value = {text}")).ok());
     let default = parsed.and_then(|mut table| table.remove("value"));
     if let Some(default) = default.and_then(|value| serde_json::to_value(value).ok()) {
-        out.insert("default".to_owned(), default);
+        out["default"] = default;
     }
-    Value::Object(out)
+    out
 }

@@ -35,16 +35,14 @@ const WORDS: &[(&str, &str, &str)] = &[("skill.*.policy", "ordered", "fixed-prio
 
 /// Refuses the first old key or word, with the new one as the hint.
 pub(super) fn refuse(tree: &Node) -> Result<(), ConfigError> {
-    walk(tree, &mut Vec::new())
+    walk(tree, &[])
 }
 
-fn walk<'a>(node: &'a Node, path: &mut Vec<&'a str>) -> Result<(), ConfigError> {
-    let Value::Table(entries) = &node.value else { return Ok(()) };
-    for entry in entries {
-        path.push(&entry.key);
-        check(entry, path)?;
-        walk(&entry.node, path)?;
-        path.pop();
+fn walk(node: &Node, above: &[&str]) -> Result<(), ConfigError> {
+    for entry in node.entries() {
+        let path = [above, &[entry.key.as_str()]].concat();
+        check(entry, &path)?;
+        walk(&entry.node, &path)?;
     }
     Ok(())
 }
@@ -54,13 +52,12 @@ fn check(entry: &KeyValue, path: &[&str]) -> Result<(), ConfigError> {
         let message = format!("`{}` has another name now", path.join("."));
         return Err(entry.origin.error(message, format!("write `{new}`")));
     }
-    let written = |node: &Node, old: &str| matches!(&node.value, Value::Text(text) if text == old);
     for (_, old, new) in WORDS.iter().filter(|(key, ..)| keys::is(key, path)) {
-        let listed = match &entry.node.value {
-            Value::List(items) => items.iter().find(|item| written(item, old)),
-            _ => None,
+        let written = match &entry.node.value {
+            Value::List(items) => &items[..],
+            _ => std::slice::from_ref(&entry.node),
         };
-        if let Some(node) = listed.or_else(|| Some(&entry.node).filter(|node| written(node, old))) {
+        if let Some(node) = written.iter().find(|node| matches!(&node.value, Value::Text(text) if text == old)) {
             let message = format!("`{old}` of `{}` has another name now", path.join("."));
             return Err(node.origin.error(message, format!("write \"{new}\"")));
         }

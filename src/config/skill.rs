@@ -33,9 +33,9 @@ pub(super) struct SkillReader<'a> {
     pub(super) unused: &'a UnusedKeys,
 }
 
-impl SkillReader<'_> {
+impl<'a> SkillReader<'a> {
     /// Reads a skill that is no mirror image.
-    pub(super) fn skill(&self, link: &Link<'_>) -> Result<SkillPlan, ConfigError> {
+    pub(super) fn skill(&self, link: &Link<'a>) -> Result<SkillPlan, ConfigError> {
         let (cached, world) = (self.cached, self.cached.map(|cached| cached.world));
         let section = link.item.table()?;
         let asked = section.required(&keys::SKILL_INPUTS, "[\"sonar\", \"light\", \"bumpers\"]")?;
@@ -150,10 +150,8 @@ impl SkillReader<'_> {
         params.derive();
         Ok(params)
     }
-}
 
-/// Where replays in a mirror are asked for: in the skill's own table, or in the one below it.
-impl<'a> SkillReader<'a> {
+    /// Where replays in a mirror are asked for: in the skill's own table, or in the one below it.
     fn mirror_replays(&self, skill: &Item<'a>) -> Item<'a> {
         let key = "mirror_replays";
         let own = skill.node.get("learning").and_then(|learning| learning.get(key));

@@ -144,20 +144,19 @@ impl Node {
         self.get("values").or_else(|| self.get("from")).is_some()
     }
 
+    /// What is in it, if this is a table.
+    pub(crate) fn entries(&self) -> &[KeyValue] {
+        if let Value::Table(entries) = &self.value { entries } else { &[] }
+    }
+
     /// The value under a key, if this is a table that has it.
     pub(crate) fn get(&self, key: &str) -> Option<&Node> {
-        match &self.value {
-            Value::Table(entries) => entries.iter().find(|entry| entry.key == key).map(|entry| &entry.node),
-            _ => None,
-        }
+        self.entries().iter().find(|entry| entry.key == key).map(|entry| &entry.node)
     }
 
     /// The keys of the table under `group`; none if there is no such table.
     pub(crate) fn names(&self, group: &str) -> Vec<&str> {
-        match self.get(group).map(|node| &node.value) {
-            Some(Value::Table(entries)) => entries.iter().map(|entry| entry.key.as_str()).collect(),
-            _ => Vec::new(),
-        }
+        self.get(group).map_or(&[][..], Self::entries).iter().map(|entry| entry.key.as_str()).collect()
     }
 
     /// The value under a key, to be changed.

@@ -6,6 +6,7 @@ use crate::layout::params::ParamRow;
 use crate::layout::schema::{Allowed, Bounds, KeyRow};
 use bytemuck::Pod;
 use std::cell::RefCell;
+use std::collections::BTreeSet;
 
 /// Whether the text is a short name of letters, digits, `-` and `_`; such names need no quotes in TOML.
 pub(crate) fn is_name(text: &str) -> bool {
@@ -147,6 +148,26 @@ impl<'a> Item<'a> {
         Ok(out)
     }
 
+    /// What a list chooses, in ascending order; `read` gives the number of an item, and its name for messages.
+    pub(crate) fn chosen(
+        &self,
+        what: &str,
+        hint: &str,
+        read: impl Fn(&Item<'a>) -> Result<(usize, String), ConfigError>,
+    ) -> Result<Vec<usize>, ConfigError> {
+        let mut chosen = BTreeSet::new();
+        for item in self.items()? {
+            let (number, name) = read(&item)?;
+            if !chosen.insert(number) {
+                return Err(item.error(format!("the {what} {name} is there twice"), "name each once"));
+            }
+        }
+        if chosen.is_empty() {
+            return Err(self.error(format!("no {what} is chosen"), hint));
+        }
+        Ok(chosen.into_iter().collect())
+    }
+
     /// A list of whole numbers up to `high`, each more than the one before.
     pub(crate) fn ascending(&self, high: u32) -> Result<Vec<u32>, ConfigError> {
         let mut out = Vec::new();
@@ -183,10 +204,8 @@ impl<'a> Item<'a> {
 
     /// The table; every key that is not asked for before [`TableReader::finish`] is refused there.
     pub(crate) fn table(&self) -> Result<TableReader<'a>, ConfigError> {
-        match &self.node.value {
-            Value::Table(entries) => {
-                Ok(TableReader { name: self.name.clone(), node: self.node, entries, asked: RefCell::new(Vec::new()) })
-            }
+        match self.node.value {
+            Value::Table(_) => Ok(TableReader { name: self.name.clone(), node: self.node, asked: RefCell::default() }),
             _ => Err(self.wrong("a table", "write its keys below a [header], or as { key = value }")),
         }
     }
@@ -197,7 +216,6 @@ impl<'a> Item<'a> {
 pub(crate) struct TableReader<'a> {
     name: String,
     node: &'a Node,
-    entries: &'a [KeyValue],
     asked: RefCell<Vec<String>>,
 }
 
@@ -229,7 +247,7 @@ impl<'a> TableReader<'a> {
         let key = key.as_ref();
         self.optional(key).ok_or_else(|| {
             // A misspelt key explains a missing one better.
-            let stranger = self.entries.iter().find(|e| nearest(&e.key, &[key]).is_some());
+            let stranger = self.node.entries().iter().find(|e| nearest(&e.key, &[key]).is_some());
             let hint = match stranger {
                 Some(entry) => format!("`{}` was found; did you mean `{key}`?", entry.key),
                 None => format!("add `{key} = {example}`"),
@@ -285,17 +303,16 @@ impl<'a> TableReader<'a> {
 
     /// All keys with their values, all counted as asked for.
     pub(crate) fn all(&self) -> Vec<(&'a KeyValue, Item<'a>)> {
-        let keys = self.entries.iter().map(|entry| entry.key.clone());
-        self.asked.borrow_mut().extend(keys);
-        let item = |entry: &'a KeyValue| Item { name: self.name_of(&entry.key), node: &entry.node };
-        self.entries.iter().map(|entry| (entry, item(entry))).collect()
+        let entries = self.node.entries().iter();
+        self.asked.borrow_mut().extend(entries.clone().map(|entry| entry.key.clone()));
+        entries.map(|entry| (entry, Item { name: self.name_of(&entry.key), node: &entry.node })).collect()
     }
 
     /// Refuses keys that were never asked for.
     pub(crate) fn finish(self) -> Result<(), ConfigError> {
         let asked = self.asked.borrow();
         let asked: Vec<&str> = asked.iter().map(String::as_str).collect();
-        let Some(entry) = self.entries.iter().find(|entry| !asked.contains(&&*entry.key)) else { return Ok(()) };
+        let Some(entry) = self.node.entries().iter().find(|entry| !asked.contains(&&*entry.key)) else { return Ok(()) };
         let place = if self.name.is_empty() { "here".to_owned() } else { format!("in `{}`", self.name) };
         let hint = match nearest(&entry.key, &asked) {
             Some(best) => format!("did you mean `{best}`?"),

@@ -101,11 +101,11 @@ impl AxisSource<'_> {
                 return Err(item.error(message, "list the values: [a, b, c]"));
             }
         };
-        let end = |name: &str| -> Result<f64, ConfigError> {
+        let end = |name: &str| {
             let end = table.required(name, "0.1")?;
-            match (&end.node.value, allowed) {
-                (_, Allowed::Whole(low, high)) => end.whole(low, high).map(f64::from),
-                (_, Allowed::Number(bounds)) => end.double(bounds),
+            match allowed {
+                Allowed::Whole(low, high) => end.whole(low, high).map(f64::from),
+                Allowed::Number(bounds) => end.double(bounds),
                 _ => Ok(0.0),
             }
         };
@@ -114,11 +114,8 @@ impl AxisSource<'_> {
             let message = format!("`{}` reaches from {from} to {to}", item.name);
             return Err(item.error(message, "`from` must be less than `to`"));
         }
-        let scale = table.optional("scale");
-        let log = match &scale {
-            Some(scale) => scale.choice("scales", &["linear", "log"])? == 1,
-            None => false,
-        };
+        let scale = table.optional("scale").map(|scale| scale.choice("scales", &["linear", "log"])).transpose()?;
+        let log = scale == Some(1);
         if log && from <= 0.0 {
             let hint = "a logarithmic axis begins above 0; raise `from`, or drop `scale`";
             return Err(item.error(format!("`{}` begins at {from}", item.name), hint));

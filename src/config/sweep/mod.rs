@@ -97,12 +97,10 @@ impl SweepSource<'_> {
                         let world = worlds.place(&Item { name: axis.key.clone(), node })?;
                         plan::AxisValue::Text(worlds.placed[world].file.clone())
                     }
-                    Value::Float(number) => plan::AxisValue::Number(*number),
-                    Value::Integer(number) => plan::AxisValue::Number(*number as f64),
-                    Value::Flag(flag) => plan::AxisValue::Text(flag.to_string()),
                     Value::Text(text) => plan::AxisValue::Text(text.clone()),
+                    Value::Flag(flag) => plan::AxisValue::Text(flag.to_string()),
                     // An axis takes neither lists nor tables.
-                    Value::List(_) | Value::Table(_) => continue,
+                    _ => plan::AxisValue::Number(axis::number(node).unwrap_or_default()),
                 });
             }
             let (key, label, scale) = (axis.key.clone(), axis.label.clone(), axis.scale);
