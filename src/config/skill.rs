@@ -1,18 +1,18 @@
 //! The keys of one `[skill.NAME]` table.
 
+use super::events::EventReader;
 use super::hierarchy::Link;
 use super::keys;
-use super::plan::{Child, Event, SkillPlan, Threshold};
+use super::plan::{Child, SkillPlan, Threshold};
 use super::unused_keys::UnusedKeys;
 use super::worlds::CachedWorld;
 use super::{children, inputs, mirror};
 use crate::layout::choices::OPTIMISER_SGD;
 use crate::layout::params::{ALWAYS, MAX_TRIALS};
-use crate::layout::{EVENTS, HyperParams, MAX_CHILDREN, MAX_STARTS};
-use crate::toml::document::{Node, Value};
+use crate::layout::{HyperParams, MAX_CHILDREN, MAX_STARTS};
+use crate::toml::document::{Node, SourceSpan, Value};
 use crate::toml::error::{ConfigError, suggest};
 use crate::toml::reader::{Item, TableReader};
-use crate::world::World;
 
 /// What the skills of an arm are read with, besides their own tables.
 #[derive(Debug, Clone, Copy)]
@@ -46,12 +46,13 @@ impl<'a> SkillReader<'a> {
         let applicable = children::applicable(&section.value(&keys::SKILL_APPLICABLE)?, &link.children)?;
         let starts = starts(&section.value(&keys::SKILL_STARTS)?, cached)?;
         let tests = section.value(&keys::SKILL_EVAL_STARTS)?;
-        let eval_starts = region(tests.text()?, &|message, hint| tests.error(message, hint), cached)?;
-        let goal = goal(&section.value(&keys::SKILL_GOAL)?, world)?;
+        let eval_starts = region(tests.text()?, tests.origin(), cached)?;
+        let mut events = EventReader::new(world);
+        let goal = events.goal(&section.value(&keys::SKILL_GOAL)?)?;
         let oracle = oracle(&section, link)?;
         let mut params = self.learning(&section, &link.item)?;
         section.fill("skill.*.", HyperParams::rows(), &mut params)?;
-        params.reward = reward(&section.required(&keys::SKILL_REWARD, "{ docked = 100, collision = -10 }")?, world)?;
+        params.reward = events.reward(&section.required(&keys::SKILL_REWARD, "{ docked = 100, collision = -10 }")?)?;
         params.threshold = [ALWAYS; MAX_CHILDREN];
         for (value, own) in params.threshold.iter_mut().zip(&applicable) {
             // A learned one is always exceeded until it is known.
@@ -76,6 +77,7 @@ impl<'a> SkillReader<'a> {
             eval_starts,
             eval_at: self.eval_at(&section)?.unwrap_or_else(|| self.eval_at.to_vec()),
             goal,
+            regions: events.regions,
             params,
         };
         inputs::check(&asked, &skill, world.map_or(0, |world| world.rooms.len()))?;
@@ -172,48 +174,8 @@ fn oracle(section: &TableReader<'_>, link: &Link<'_>) -> Result<bool, ConfigErro
     Ok(oracle)
 }
 
-/// Makes a complaint, from its message and hint, about the place of a name.
-type Complain<'a> = dyn Fn(String, String) -> ConfigError + 'a;
-
-/// An event that can happen in this world.
-fn event(name: &str, place: &Complain<'_>, world: Option<&World>) -> Result<Event, ConfigError> {
-    let names = Event::ALL.map(Event::name);
-    let Some(code) = names.iter().position(|known| *known == name) else {
-        return Err(place(format!("`{name}` is not one of the events"), suggest(name, "events", &names)));
-    };
-    match world.and_then(|world| Some((world, world.lacks(Event::ALL[code].needs())?.name()))) {
-        None => Ok(Event::ALL[code]),
-        Some((world, lacking)) => {
-            let message = format!("`{name}` cannot happen: the world `{}` has no {lacking}", world.name);
-            Err(place(message, format!("add {lacking} to the world file, or drop this event")))
-        }
-    }
-}
-
-fn reward(item: &Item<'_>, world: Option<&World>) -> Result<[f32; EVENTS], ConfigError> {
-    let mut reward = [0.0; EVENTS];
-    for (entry, amount) in item.table()?.all() {
-        let event = event(&entry.key, &|message, hint| entry.origin.error(message, hint), world)?;
-        reward[event as usize] = amount.number(keys::AMOUNT)?;
-    }
-    if reward == [0.0; EVENTS] {
-        let message = format!("`{}` pays for nothing, so there is nothing to learn", item.name);
-        return Err(item.error(message, "write { docked = 100, collision = -10 }, or other events and amounts"));
-    }
-    Ok(reward)
-}
-
-fn goal(item: &Item<'_>, world: Option<&World>) -> Result<u32, ConfigError> {
-    // A skill may go on until its step limit.
-    if item.items()?.is_empty() {
-        return Ok(0);
-    }
-    let events = item.distinct(EVENTS, |one| event(one.text()?, &|message, hint| one.error(message, hint), world))?;
-    Ok(events.iter().fold(0, |bits, event| bits | event.bit()))
-}
-
 /// The name of a region in which a trial can start.
-fn region(name: &str, place: &Complain<'_>, cached: Option<CachedWorld<'_>>) -> Result<String, ConfigError> {
+fn region(name: &str, origin: &SourceSpan, cached: Option<CachedWorld<'_>>) -> Result<String, ConfigError> {
     let Some(cached) = cached else { return Ok(name.to_owned()) };
     let world = cached.world;
     let names = world.region_names();
@@ -221,11 +183,11 @@ fn region(name: &str, place: &Complain<'_>, cached: Option<CachedWorld<'_>>) -> 
     match cached.region_is_empty(name) {
         None => {
             let message = format!("the world `{}` has no region `{name}`", world.name);
-            Err(place(message, suggest(name, "regions", &names)))
+            Err(origin.error(message, suggest(name, "regions", &names)))
         }
         Some(true) => {
             let hint = "no part of it is 14 inches from everything solid; enlarge it or choose another one";
-            Err(place(format!("the robot fits nowhere in the region `{name}`"), hint.to_owned()))
+            Err(origin.error(format!("the robot fits nowhere in the region `{name}`"), hint))
         }
         Some(false) => Ok(name.to_owned()),
     }
@@ -234,7 +196,7 @@ fn region(name: &str, place: &Complain<'_>, cached: Option<CachedWorld<'_>>) -> 
 /// At least one region with its share.
 fn starts(item: &Item<'_>, cached: Option<CachedWorld<'_>>) -> Result<Vec<(String, f32)>, ConfigError> {
     if let Value::Text(name) = &item.node.value {
-        return Ok(vec![(region(name, &|message, hint| item.error(message, hint), cached)?, 1.0)]);
+        return Ok(vec![(region(name, item.origin(), cached)?, 1.0)]);
     }
     if !matches!(item.node.value, Value::Table(_)) {
         let message = format!("`{}` must be a region or a table of shares, not {}", item.name, item.node.kind());
@@ -243,7 +205,7 @@ fn starts(item: &Item<'_>, cached: Option<CachedWorld<'_>>) -> Result<Vec<(Strin
     let mut starts = Vec::new();
     let mut sum = 0.0;
     for (entry, share) in item.table()?.all() {
-        let name = region(&entry.key, &|message, hint| entry.origin.error(message, hint), cached)?;
+        let name = region(&entry.key, &entry.origin, cached)?;
         sum += share.double(keys::START_SHARE)?;
         starts.push((name, share.number(keys::START_SHARE)?));
     }

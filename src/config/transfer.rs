@@ -5,6 +5,7 @@
 //! rows of results, by their order: another floor plan must have the same ones.
 
 use super::arms::small_name;
+use super::events::lacking_region;
 use super::plan::{Alteration, ArmPlan, Event, Noise};
 use super::worlds::{CachedWorld, Worlds};
 use super::{keys, robot};
@@ -86,6 +87,10 @@ fn check_root(cached: CachedWorld<'_>, arm: &ArmPlan, place: &SourceSpan) -> Res
             let message = format!("`{}` cannot happen: the world `{}` has no {lacking}", event.name(), world.name);
             return Err(place.error(message, format!("add {lacking} to it: tests of `{}` end with this", root.name)));
         }
+    }
+    if let Some(region) = root.regions.iter().find(|region| world.region_area(region).is_none()) {
+        let hint = format!("give the altered world this region: `{}` is about it", root.name);
+        return Err(place.error(lacking_region(region, world), hint));
     }
     Ok(())
 }
