@@ -35,18 +35,8 @@ use std::time::{Duration, Instant};
 pub(super) struct RunArguments {
     /// The experiment: a TOML file.
     config: PathBuf,
-    /// Seeds, instead of the config's: `0..7` (7 left out), `5`, `1,2,5..9`.
-    #[arg(long, value_name = "SEEDS")]
-    seeds: Option<String>,
-    /// Runs this arm only; may be given several times.
-    #[arg(long, value_name = "ARM")]
-    arm: Vec<String>,
-    /// Runs this point of the sweep only, counted from 0 as in the tables; may be given several times.
-    #[arg(long, value_name = "N")]
-    point: Vec<u32>,
-    /// Sets a key of the config, such as `learning.learning_rate=0.01`; may be given several times.
-    #[arg(long, value_name = "KEY=VALUE")]
-    set: Vec<String>,
+    #[command(flatten)]
+    overrides: Overrides,
     #[command(flatten)]
     backend: BackendOptions,
     /// Learners that train together and are saved together; chosen to suit the backend if not given.
@@ -65,13 +55,7 @@ pub(super) struct RunArguments {
 }
 
 pub(super) fn run(arguments: &RunArguments) -> Result<(), CliError> {
-    let overrides = Overrides {
-        set: arguments.set.clone(),
-        seeds: arguments.seeds.clone(),
-        arms: arguments.arm.clone(),
-        points: arguments.point.clone(),
-    };
-    let experiment = Experiment::load(&arguments.config, &overrides)?;
+    let experiment = Experiment::load(&arguments.config, &arguments.overrides)?;
     let plan = experiment.plan();
     let out = arguments.out.clone().unwrap_or_else(|| Path::new("runs").join(&plan.name));
     // A folder that is there is looked at first. A new one is made last: what is refused leaves nothing behind.

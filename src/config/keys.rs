@@ -5,19 +5,8 @@
 
 use crate::layout::params::{HyperParams, MAX_TRIALS, Noise};
 pub use crate::layout::schema::{Allowed, Bounds, DefaultSource, KeyRow};
+use crate::layout::schema::{LIST, TEXT, key_rows};
 use Allowed::{Choice, Flag, Number, Other, Whole};
-
-macro_rules! keys {
-    ($($name:ident = $path:literal, $default:expr, $allowed:expr, $source:ident, $doc:literal;)*) => {
-        $(
-            #[doc = concat!("`", $path, "`: ", $doc)]
-            pub const $name: KeyRow = KeyRow {
-                path: $path, default: $default, allowed: $allowed, source: DefaultSource::$source, doc: $doc,
-            };
-        )*
-        const OTHERS: &[KeyRow] = &[$($name),*];
-    };
-}
 
 /// All keys: those of a robot and of learning first, skills and what follows from them last.
 pub fn all() -> impl Iterator<Item = &'static KeyRow> {
@@ -49,11 +38,11 @@ pub(super) fn is(row: &str, path: &[&str]) -> bool {
     }
 }
 
-const TEXT: &[&str] = &["string"];
-const LIST: &[&str] = &["array"];
 const TABLE: &[&str] = &["object"];
 
-keys! {
+key_rows! {
+    /// The keys of this module.
+    OTHERS:
     NAME = "name", None, Other(TEXT, "letters, digits, - and _"), Ours, "Names the run folder; the file's stem if left out.";
     TITLE = "title", Some("''"), Other(TEXT, "text"), Ours, "One line that says what the experiment is for.";
     WORLD = "world", None, Other(TEXT, "a path"), Ours, "The world file, relative to the config file; required.";

@@ -18,19 +18,23 @@ use crate::toml::reader::{Item, TableReader};
 use crate::toml::{Files, OsFiles};
 use std::path::Path;
 
-/// What the command line changes in a config.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+/// What the command line changes in a config; there, these are options. A later `--set` wins over an earlier one. One on a
+/// base key wins over the file's base key, but an arm's own override of that key, being more specific, still holds in that
+/// arm. `--seeds` wins over `--set`, and `--arm` over the key `arms`.
+#[derive(Debug, Clone, Default, PartialEq, Eq, clap::Args)]
 pub struct Overrides {
-    /// `key=value` of each `--set`, in order: `learning.learning_rate=0.01`, `skill.dock.trials=20`,
-    /// `arm.taught-sgd.learning.learning_rate=0.1`. A later one wins. One on a base key wins over the file's base key, but an
-    /// arm's own override of that key, being more specific, still holds in that arm.
-    pub set: Vec<String>,
-    /// The value of `--seeds`, which wins over the file and over `--set`.
+    /// Seeds, instead of the config's: `0..7` (7 left out), `5`, `1,2,5..9`.
+    #[arg(long, value_name = "SEEDS")]
     pub seeds: Option<String>,
-    /// The values of `--arm`: only these arms are run, whatever the key `arms` says.
+    /// Runs this arm only; may be given several times.
+    #[arg(long = "arm", value_name = "ARM")]
     pub arms: Vec<String>,
-    /// The values of `--point`: only these points of the sweep are run.
+    /// Runs this point of the sweep only, counted from 0 as in the tables; may be given several times.
+    #[arg(long = "point", value_name = "N")]
     pub points: Vec<u32>,
+    /// Sets a key of the config, such as `learning.learning_rate=0.01`; may be given several times.
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
 }
 
 impl Overrides {

@@ -10,46 +10,42 @@ use std::fmt::Write;
 /// The keys that match a pattern, in words; all without one. A pattern is part of a path or of a sentence, in any case,
 /// or the path of one skill's or arm's key, such as `skill.dock.trials`.
 pub fn text(pattern: &str) -> String {
-    let mut out = String::new();
-    section(&mut out, "Config files", keys::all(), pattern);
-    let docs = Event::ALL.iter().map(|event| event.doc()).chain(RegionEvent::ALL.iter().map(|event| event.doc()));
-    let names = [
-        ("Actions", Action::ALL.iter().map(|a| (a.name().to_owned(), a.doc())).collect::<Vec<_>>()),
-        ("Events", event_names().into_iter().zip(docs).collect()),
-        ("Inputs", Input::ALL.iter().map(|i| (format!("{} ({})", i.name(), i.width_in_words()), i.doc())).collect()),
+    let rows = |rows: &mut dyn Iterator<Item = &'static KeyRow>| -> Vec<(String, String)> {
+        rows.filter(|row| matches(row, pattern)).map(entry).collect()
+    };
+    let names = |title: &'static str, names: Vec<(String, &str)>| {
+        let wanted = |(name, doc): &(String, &str)| [title, name, doc].iter().any(|text| holds(text, pattern));
+        let found = names.into_iter().filter(wanted).map(|(name, doc)| (name, doc.trim().to_owned()));
+        (title, found.collect())
+    };
+    let events = Event::ALL.iter().map(|event| event.doc()).chain(RegionEvent::ALL.iter().map(|event| event.doc()));
+    let width = |input: &Input| format!("{} ({})", input.name(), input.width_in_words());
+    let sections = [
+        ("Config files", rows(&mut keys::all())),
+        names("Actions", Action::ALL.iter().map(|action| (action.name().to_owned(), action.doc())).collect()),
+        names("Events", event_names().into_iter().zip(events).collect()),
+        names("Inputs", Input::ALL.iter().map(|input| (width(input), input.doc())).collect()),
+        ("World files", rows(&mut world::keys::ALL.iter())),
     ];
-    for (title, rows) in names {
-        let wanted = |text: &str| holds(text, pattern);
-        let found: Vec<_> =
-            rows.into_iter().filter(|(name, doc)| wanted(title) || wanted(name) || wanted(doc)).collect();
-        if !found.is_empty() {
-            let _ = writeln!(out, "{title}\n");
-        }
-        for (name, doc) in found {
-            let _ = writeln!(out, "  {name}\n      {}\n", doc.trim());
+    let mut out = String::new();
+    for (title, entries) in sections.iter().filter(|(_, entries)| !entries.is_empty()) {
+        // Writing to a String cannot fail.
+        let _ = writeln!(out, "{title}\n");
+        for (name, said) in entries {
+            let _ = writeln!(out, "  {name}\n      {said}\n");
         }
     }
-    section(&mut out, "World files", world::keys::ALL.iter(), pattern);
     out
 }
 
-fn section(out: &mut String, title: &str, rows: impl Iterator<Item = &'static KeyRow>, pattern: &str) {
-    let found: Vec<&KeyRow> = rows.filter(|row| matches(row, pattern)).collect();
-    if !found.is_empty() {
-        // Writing to a String cannot fail.
-        let _ = writeln!(out, "{title}\n");
-    }
-    for row in found {
-        let default = row.default.map_or_else(String::new, |text| format!(" = {text}"));
-        let source = match (row.default, row.source) {
-            (None, _) => "",
-            (_, DefaultSource::Paper) => "  (default: paper)",
-            (_, DefaultSource::Ours) => "  (default: ours)",
-        };
-        let _ = writeln!(out, "  {}{default}{source}", row.path);
-        let _ = writeln!(out, "      {}", row.allowed);
-        let _ = writeln!(out, "      {}\n", row.doc.trim());
-    }
+/// A key with its default, and what is said of it.
+fn entry(row: &KeyRow) -> (String, String) {
+    let source = match row.source {
+        DefaultSource::Paper => "paper",
+        DefaultSource::Ours => "ours",
+    };
+    let default = row.default.map_or_else(String::new, |text| format!(" = {text}  (default: {source})"));
+    (format!("{}{default}", row.path), format!("{}\n      {}", row.allowed, row.doc.trim()))
 }
 
 fn holds(text: &str, pattern: &str) -> bool {
