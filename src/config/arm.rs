@@ -30,12 +30,12 @@ impl ArmReader<'_> {
     /// Reads an arm at a point from its complete config.
     pub(super) fn read(&mut self, (name, point): (&str, u32), tree: &Node) -> Result<ArmPlan, ConfigError> {
         let root = Item::root(tree).table()?;
-        let world = self.worlds.place(&root.required(&keys::WORLD, "\"worlds/office.toml\"")?)?;
+        let world = self.worlds.place(&root.required(keys::WORLD, "\"worlds/office.toml\"")?)?;
         let teacher = teacher(&root.required("teacher", "{}")?)?;
         let robot = robot::read(&root.required("robot", "{}")?)?;
         let table = skills(tree)?;
         let links = hierarchy::links(&table)?;
-        let top = hierarchy::root(root.optional(&keys::ROOT).as_ref(), &links)?;
+        let top = hierarchy::root(root.optional(keys::ROOT).as_ref(), &links)?;
         let order = hierarchy::order(&links, top)?;
         let untrained = self.skills(tree, teacher.lessons, robot);
         let reader = SkillReader { cached: Some(self.worlds.cached(world)), order: &order, ..untrained };

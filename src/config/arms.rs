@@ -34,12 +34,12 @@ pub(super) fn read(
     own: Option<&Node>,
     sweep: Option<&SweepSource<'_>>,
 ) -> Result<ReadArms, ConfigError> {
-    let chosen = root.optional(&keys::ARMS);
+    let chosen = root.optional(keys::ARMS);
     // Read below, merged with each arm.
     for key in ARM_KEYS.into_iter().filter(|key| *key != EXTENDS) {
         root.optional(key);
     }
-    if let Some(named) = root.optional(&keys::ROOT) {
+    if let Some(named) = root.optional(keys::ROOT) {
         // It may be in force in no arm.
         named.choice("skills", &base.names("skill"))?;
     }

@@ -87,12 +87,12 @@ pub fn load_from(files: &dyn Files, path: &Path, overrides: &Overrides) -> Resul
     base.merge(tree);
 
     let root = Item::root(&base).table()?;
-    let name = match root.optional(&keys::NAME) {
+    let name = match root.optional(keys::NAME) {
         Some(item) => item.short_name()?.to_owned(),
         None => path.file_stem().map_or_else(|| "config".to_owned(), |stem| stem.to_string_lossy().into_owned()),
     };
     let mut worlds = Worlds::new(files, path);
-    worlds.place(&root.required(&keys::WORLD, "\"worlds/office.toml\"")?)?;
+    worlds.place(&root.required(keys::WORLD, "\"worlds/office.toml\"")?)?;
     let evaluate = evaluate(&root)?;
     let run_seed = root.word(&keys::SEED)?;
     let sweep = sweep::read(swept.as_ref(), &base, run_seed)?;

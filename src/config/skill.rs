@@ -38,11 +38,11 @@ impl<'a> SkillReader<'a> {
     pub(super) fn skill(&self, link: &Link<'a>) -> Result<SkillPlan, ConfigError> {
         let (cached, world) = (self.cached, self.cached.map(|cached| cached.world));
         let section = link.item.table()?;
-        let asked = section.required(&keys::SKILL_INPUTS, "[\"sonar\", \"light\", \"bumpers\"]")?;
+        let asked = section.required(keys::SKILL_INPUTS, "[\"sonar\", \"light\", \"bumpers\"]")?;
         let inputs = inputs::read(&asked, world)?;
         // These two are in the link already.
-        section.optional(&keys::SKILL_CHILDREN);
-        section.optional(&keys::SKILL_MIRROR);
+        section.optional(keys::SKILL_CHILDREN);
+        section.optional(keys::SKILL_MIRROR);
         let applicable = children::applicable(&section.value(&keys::SKILL_APPLICABLE)?, &link.children)?;
         let starts = starts(&section.value(&keys::SKILL_STARTS)?, cached)?;
         let tests = section.value(&keys::SKILL_EVAL_STARTS)?;
@@ -52,7 +52,7 @@ impl<'a> SkillReader<'a> {
         let oracle = oracle(&section, link)?;
         let mut params = self.learning(&section, &link.item)?;
         section.fill("skill.*.", HyperParams::rows(), &mut params)?;
-        params.reward = events.reward(&section.required(&keys::SKILL_REWARD, "{ docked = 100, collision = -10 }")?)?;
+        params.reward = events.reward(&section.required(keys::SKILL_REWARD, "{ docked = 100, collision = -10 }")?)?;
         params.threshold = [ALWAYS; MAX_CHILDREN];
         for (value, own) in params.threshold.iter_mut().zip(&applicable) {
             // A learned one is always exceeded until it is known.
@@ -102,7 +102,7 @@ impl<'a> SkillReader<'a> {
     }
 
     fn eval_at(&self, section: &TableReader<'_>) -> Result<Option<Vec<u32>>, ConfigError> {
-        section.optional(&keys::SKILL_EVAL_AT).map(|item| item.ascending(MAX_TRIALS)).transpose()
+        section.optional(keys::SKILL_EVAL_AT).map(|item| item.ascending(MAX_TRIALS)).transpose()
     }
 
     /// The place of a skill among the arm's own; below a skill that the arm does not train it has none, and stays.

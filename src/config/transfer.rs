@@ -25,7 +25,7 @@ pub(super) fn read<'a>(
     for (entry, item) in (Item { name: "transfer".to_owned(), node: altered }).table()?.all() {
         small_name(entry, "an alteration")?;
         let table = item.table()?;
-        let (world, noise) = (table.optional(&keys::TRANSFER_WORLD), table.optional(&keys::TRANSFER_NOISE));
+        let (world, noise) = (table.optional(keys::TRANSFER_WORLD), table.optional(keys::TRANSFER_NOISE));
         table.finish()?;
         let place = match (&world, &noise) {
             (Some(world), _) => world.origin(),

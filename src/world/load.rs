@@ -175,7 +175,7 @@ fn light(root: &TableReader<'_>, floor: &Rect, written: &mut Written) -> Result<
     let place = table.required("at", "[12, 12]")?;
     let at = point(&place, floor)?;
     written.light = Some(place.origin().clone());
-    table.required(&keys::LIGHT_RANGE, "140")?;
+    table.required(keys::LIGHT_RANGE, "140")?;
     let range = table.number(&keys::LIGHT_RANGE)?;
     let area = table.number_or_default(&keys::LIGHT_AREA)?;
     table.finish()?;

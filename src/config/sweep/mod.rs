@@ -51,11 +51,11 @@ pub(super) fn read<'a>(
     let Some(node) = node else { return Ok(None) };
     let item = Item { name: "sweep".to_owned(), node };
     let table = item.table()?;
-    let design = match table.optional(&keys::SWEEP_DESIGN) {
+    let design = match table.optional(keys::SWEEP_DESIGN) {
         Some(item) if item.choice("designs", &["grid", "random"])? == 1 => plan::Design::Random,
         _ => plan::Design::Grid,
     };
-    let (count, only) = (table.optional(&keys::SWEEP_POINTS), table.optional(&keys::SWEEP_ONLY));
+    let (count, only) = (table.optional(keys::SWEEP_POINTS), table.optional(keys::SWEEP_ONLY));
     let skills = base.names("skill");
     let mut axes: Vec<AxisSource<'a>> = Vec::new();
     for (entry, item) in table.all() {
