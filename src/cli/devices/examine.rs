@@ -1,6 +1,6 @@
 //! What is known of each adapter of this machine.
 
-use super::{AdapterReport, DeviceList};
+use super::listing::{AdapterReport, DeviceList};
 use crate::backend::gpu::adapter::{adapters, choose};
 use crate::backend::gpu::arithmetic_check::ANSWER_WORDS;
 use crate::backend::gpu::conformance::{QUESTIONS, Verdict, examine};

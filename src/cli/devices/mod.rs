@@ -2,6 +2,7 @@
 
 #[cfg(feature = "gpu")]
 mod examine;
+mod listing;
 
 use super::console::{count, print};
 use super::error::{CliError, exit_codes};
@@ -9,8 +10,7 @@ use crate::backend::cpu::cpu_backend;
 use crate::backend::open::open_adapters;
 use crate::config::{Overrides, load};
 use crate::train::parity::Work;
-use serde::Serialize;
-use std::fmt::Write;
+use listing::text;
 use std::path::{Path, PathBuf};
 
 /// Lists the graphics adapters of this machine and examines each: does it give the same bytes as the CPU?
@@ -35,36 +35,6 @@ pub(super) struct DevicesArguments {
     learners: u32,
 }
 
-/// What is known of all adapters.
-#[derive(Debug, Serialize)]
-struct DeviceList {
-    adapters: Vec<AdapterReport>,
-    /// Why there is none.
-    none: Option<String>,
-}
-
-/// What is known of one adapter.
-#[derive(Debug, Serialize)]
-struct AdapterReport {
-    name: String,
-    backend: String,
-    driver: String,
-    kind: String,
-    software: bool,
-    max_buffer_bytes: u64,
-    max_binding_bytes: u64,
-    max_storage_buffers: u32,
-    takes_spirv: bool,
-    exact: bool,
-    /// Functions and shapes of which each answer was compared.
-    #[serde(skip)]
-    compared: String,
-    /// The first difference, or what failed.
-    reason: Option<String>,
-    subnormals_kept: Option<bool>,
-    loop_budget: Option<u32>,
-}
-
 /// Prints the adapters, or what they do to an experiment.
 ///
 /// # Errors
@@ -76,7 +46,8 @@ pub(super) fn devices(arguments: &DevicesArguments) -> Result<(), CliError> {
     #[cfg(feature = "gpu")]
     let listing = examine::devices();
     #[cfg(not(feature = "gpu"))]
-    let listing = DeviceList { adapters: Vec::new(), none: Some(crate::backend::BackendError::NotBuilt.to_string()) };
+    let listing =
+        listing::DeviceList { adapters: Vec::new(), none: Some(crate::backend::BackendError::NotBuilt.to_string()) };
     if arguments.json {
         print(&(serde_json::to_string_pretty(&listing).unwrap_or_default() + "\n"))
     } else {
@@ -105,51 +76,4 @@ fn check_parity(config: &Path, learners: usize) -> Result<(), CliError> {
         print(&format!("{}\n  parity: {line}\n", adapter.name))?;
     }
     if differing == 0 { Ok(()) } else { Err(CliError::Parity { differing, adapters: all }) }
-}
-
-fn text(listing: &DeviceList) -> String {
-    let mut text = String::from("cpu\n  always there; the bytes that every exact adapter gives too\n");
-    for entry in &listing.adapters {
-        let _ = write!(text, "\n{}\n", entry.name);
-        for (key, value) in lines(entry) {
-            let _ = writeln!(text, "  {key:<9} {value}");
-        }
-    }
-    if let Some(none) = &listing.none {
-        let _ = write!(text, "\nno GPU\n  {}\n", none.replace('\n', "\n  "));
-    }
-    text
-}
-
-fn lines(entry: &AdapterReport) -> Vec<(&'static str, String)> {
-    let exact = match (&entry.reason, entry.exact) {
-        (_, true) => format!("yes: {}, the bits of the CPU", entry.compared),
-        (Some(reason), _) => format!("no: {reason}"),
-        (None, _) => "no".to_owned(),
-    };
-    let used = match (entry.exact, entry.software) {
-        (true, false) => "--backend auto and --backend gpu",
-        (_, true) => {
-            "--backend gpu where there is no card, or --adapter NAME; never by auto, for it is slower than cpu"
-        }
-        (false, false) => "--backend gpu only: its results are close to the CPU's, but not the same",
-    };
-    let loops = match entry.loop_budget {
-        Some(budget) => format!("ended by the driver after {budget} turns; dispatches stay below that"),
-        None => "no limit seen".to_owned(),
-    };
-    let limits = format!(
-        "buffers of {} MiB, {} MiB of it at a time; {} storage buffers",
-        entry.max_buffer_bytes >> 20,
-        entry.max_binding_bytes >> 20,
-        entry.max_storage_buffers
-    );
-    vec![
-        ("type", entry.kind.clone()),
-        ("driver", format!("{}, {}", entry.backend, entry.driver)),
-        ("exact", exact),
-        ("used by", used.to_owned()),
-        ("limits", limits),
-        ("loops", loops),
-    ]
 }
