@@ -5,6 +5,7 @@ use super::cpu::cpu_backend;
 use super::gpu::{GpuBackend, GpuOptions, adapter, device::is_software};
 use super::reference::reference_backend;
 use super::{Backend, BackendError};
+use clap::builder::RangedU64ValueParser;
 
 /// Where to execute the kernels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
@@ -20,16 +21,20 @@ pub enum BackendChoice {
     Gpu,
 }
 
-/// Which backend, and how it works. Nothing of it changes a result.
-#[derive(Debug, Clone, Default)]
+/// Which backend, and how it works. Nothing of it changes a result. On the command line these are options.
+#[derive(Debug, Clone, Default, clap::Args)]
 pub struct BackendOptions {
-    /// Which backend.
+    /// Where to execute: a real and exact GPU if there is one (auto), the CPU, or a GPU.
+    #[arg(long = "backend", value_enum, default_value = "auto", value_name = "WHERE")]
     pub choice: BackendChoice,
-    /// Part of an adapter's name; chooses it even if it is software.
+    /// Part of an adapter's name, as `skilltree devices` lists them; chooses it even if it is software.
+    #[arg(long, value_name = "NAME")]
     pub adapter: Option<String>,
     /// Threads of the CPU backend; 0 is one per core.
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(0..=1024))]
     pub threads: usize,
     /// Iterations (steps or replayed transitions) of each learner per dispatch; found out if not given.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub iterations: Option<u32>,
 }
 

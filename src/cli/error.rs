@@ -61,7 +61,7 @@ pub enum CliError {
     Stopped(String),
     /// A benchmark cannot be run, or its executors disagree.
     #[error(transparent)]
-    Bench(BenchError),
+    Bench(#[from] BenchError),
     /// A report cannot be made.
     #[cfg(feature = "report")]
     #[error(transparent)]
@@ -72,16 +72,14 @@ impl CliError {
     /// Exit code: 2 usage or config, 75 run again, 1 anything else.
     pub fn code(&self) -> u8 {
         match self {
-            Self::Usage { .. } | Self::Config(_) | Self::Setup(_) | Self::Backend(BackendError::NotBuilt) => 2,
-            Self::Backend(BackendError::Device { .. }) | Self::Stopped(_) => 75,
-            Self::Output(_)
-            | Self::Signals(_)
-            | Self::Parity { .. }
-            | Self::Backend(_)
-            | Self::Record(_)
-            | Self::Bench(_) => 1,
-            #[cfg(feature = "report")]
-            Self::Report(_) => 1,
+            Self::Usage { .. } | Self::Config(_) | Self::Setup(_) => 2,
+            Self::Stopped(_) => 75,
+            Self::Backend(error) | Self::Bench(BenchError::Backend(error)) => match error {
+                BackendError::NotBuilt => 2,
+                BackendError::Device { .. } => 75,
+                _ => 1,
+            },
+            _ => 1,
         }
     }
 }
@@ -92,15 +90,6 @@ impl From<RunError> for CliError {
             RunError::Record(error) => Self::Record(error),
             RunError::Backend(error) => Self::Backend(error),
             RunError::Stopped { .. } => Self::Stopped(error.to_string()),
-        }
-    }
-}
-
-impl From<BenchError> for CliError {
-    fn from(error: BenchError) -> Self {
-        match error {
-            BenchError::Backend(error) => Self::Backend(error),
-            other => Self::Bench(other),
         }
     }
 }

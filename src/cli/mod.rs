@@ -1,12 +1,10 @@
 //! The command line: one file per command.
 
-mod backend;
 mod bench;
 mod console;
 mod devices;
 mod error;
 mod keys;
-mod parity;
 mod preview;
 mod probe;
 mod progress;

@@ -64,10 +64,8 @@ struct ProbeReading {
     y: f32,
     heading: f32,
     room: Option<String>,
-    sonar: [u32; 24],
-    light: [u8; 24],
-    bumpers: [u8; 4],
-    compass: f32,
+    #[serde(flatten)]
+    sensed: SensorValues,
     blocked: bool,
     docked: bool,
 }
@@ -88,11 +86,7 @@ pub(super) fn probe(arguments: &ProbeArguments) -> Result<(), CliError> {
         backend.step(&shared, std::slice::from_mut(&mut robot), 1)?;
         let reading = reading_of(&robot, plan.world());
         if arguments.json {
-            let line = serde_json::to_string(&reading).map_err(|error| CliError::Usage {
-                message: format!("the reading has no JSON form: {error}"),
-                hint: "this is a bug in skilltree: please report it".to_owned(),
-            })?;
-            print(&(line + "\n"))?;
+            print(&(serde_json::to_string(&reading).unwrap_or_default() + "\n"))?;
         } else {
             print(&text_of(action, &reading))?;
         }
@@ -101,17 +95,13 @@ pub(super) fn probe(arguments: &ProbeArguments) -> Result<(), CliError> {
 }
 
 fn reading_of(robot: &Robot, world: &World) -> ProbeReading {
-    let observed = SensorValues::of(robot);
     let room = world.room_of(Vec2::new(robot.x, robot.y)).map(|room| world.rooms[room].name.clone());
     ProbeReading {
         x: robot.x,
         y: robot.y,
         heading: robot.heading,
         room,
-        sonar: observed.sonar,
-        light: observed.light,
-        bumpers: observed.bumpers,
-        compass: observed.compass,
+        sensed: SensorValues::of(robot),
         blocked: robot.events & (COLLISION | DOCKED) != 0,
         docked: robot.events & DOCKED != 0,
     }
@@ -136,10 +126,10 @@ fn text_of(action: Option<Action>, reading: &ProbeReading) -> String {
         reading.x,
         reading.y,
         reading.heading,
-        list(&reading.sonar),
-        bits(&reading.light),
-        bits(&reading.bumpers),
-        reading.compass,
+        list(&reading.sensed.sonar),
+        bits(&reading.sensed.light),
+        bits(&reading.sensed.bumpers),
+        reading.sensed.compass,
     )
 }
 
@@ -170,9 +160,7 @@ fn pose_of(text: &str, world: &World) -> Result<Pose, CliError> {
         );
         return Err(usage(message, &hint));
     }
-    // rem_euclid of a tiny negative angle rounds to 360.
-    let wrapped = heading.rem_euclid(360.0);
-    Ok(Pose { x, y, heading: if wrapped < 360.0 { wrapped } else { 0.0 } })
+    Ok(Pose::new(x, y, heading))
 }
 
 fn actions_of(text: &str) -> Result<Vec<Action>, CliError> {

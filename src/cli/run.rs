@@ -1,11 +1,11 @@
 //! `skilltree run`: trains, evaluates, records, reports.
 
-use super::backend::BackendArguments;
 use super::console::{print, tell};
 use super::error::{CliError, exit_codes};
 use super::progress::RunProgress;
 use super::signals::Signals;
 use super::{preview, report};
+use crate::backend::open::BackendOptions;
 use crate::config::Overrides;
 use crate::experiment::Experiment;
 use crate::run_folder::file_system::{Disk, FileSystem};
@@ -35,20 +35,10 @@ use std::time::{Duration, Instant};
 pub(super) struct RunArguments {
     /// The experiment: a TOML file.
     config: PathBuf,
-    /// Seeds, instead of the config's: `0..7` (7 left out), `5`, `1,2,5..9`.
-    #[arg(long, value_name = "SEEDS")]
-    seeds: Option<String>,
-    /// Runs this arm only; may be given several times.
-    #[arg(long, value_name = "ARM")]
-    arm: Vec<String>,
-    /// Runs this point of the sweep only, counted from 0 as in the tables; may be given several times.
-    #[arg(long, value_name = "N")]
-    point: Vec<u32>,
-    /// Sets a key of the config, such as `learning.learning_rate=0.01`; may be given several times.
-    #[arg(long, value_name = "KEY=VALUE")]
-    set: Vec<String>,
     #[command(flatten)]
-    backend: BackendArguments,
+    overrides: Overrides,
+    #[command(flatten)]
+    backend: BackendOptions,
     /// Learners that train together and are saved together; chosen to suit the backend if not given.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     cohort: Option<u32>,
@@ -65,13 +55,7 @@ pub(super) struct RunArguments {
 }
 
 pub(super) fn run(arguments: &RunArguments) -> Result<(), CliError> {
-    let overrides = Overrides {
-        set: arguments.set.clone(),
-        seeds: arguments.seeds.clone(),
-        arms: arguments.arm.clone(),
-        points: arguments.point.clone(),
-    };
-    let experiment = Experiment::load(&arguments.config, &overrides)?;
+    let experiment = Experiment::load(&arguments.config, &arguments.overrides)?;
     let plan = experiment.plan();
     let out = arguments.out.clone().unwrap_or_else(|| Path::new("runs").join(&plan.name));
     // A folder that is there is looked at first. A new one is made last: what is refused leaves nothing behind.
@@ -81,7 +65,10 @@ pub(super) fn run(arguments: &RunArguments) -> Result<(), CliError> {
         tell(&format!("{} is complete: nothing is left to run", out.display()));
         return conclude(&out);
     }
-    let mut backend = arguments.backend.open()?;
+    let mut backend = arguments.backend.open(&mut |reason| {
+        let reason = reason.to_string();
+        tell(&format!("no exact GPU, so the CPU it is: {}", reason.lines().next().unwrap_or_default()));
+    })?;
     let groups = groups(plan)?;
     let options =
         Options { cohort: arguments.cohort.map(|cohort| cohort as usize), checkpoint: Some(arguments.checkpoint) };

@@ -1,18 +1,14 @@
 //! The experimental conditions: the base config with each arm's own table laid over it.
 
 use super::arm::{ArmReader, skills};
-use super::hierarchy;
 use super::plan::ArmPlan;
 use super::skill::SkillReader;
 use super::sweep::SweepSource;
 use super::sweep::expand::{self, Base};
-use super::unused_keys::UnusedKeys;
-use super::worlds::Worlds;
-use super::{keys, set};
+use super::{hierarchy, keys};
 use crate::toml::document::{KeyValue, Node};
 use crate::toml::error::{ConfigError, list, nearest, suggest};
 use crate::toml::reader::{Item, TableReader, is_name};
-use std::collections::BTreeSet;
 
 /// Name of the only arm of a config that has no `[arm.NAME]`.
 const BASE: &str = "base";
@@ -21,9 +17,86 @@ const ARM_KEYS: [&str; 7] = [EXTENDS, "world", "root", "learning", "skill", "rob
 /// Key of an arm that names the arm over which it is laid.
 const EXTENDS: &str = "extends";
 
-/// An arm's table, and before it those of the arms that it extends.
-fn layers<'a>(own: &'a Node, arm: &Item<'a>) -> Result<Vec<&'a Node>, ConfigError> {
+/// The arms of a config.
+#[derive(Debug)]
+pub(super) struct ReadArms {
+    /// All arms without the sweep, so that a mistake in one that is not run is found too.
+    pub(super) base: Vec<ArmPlan>,
+    /// The chosen arms, each at its points of the sweep.
+    pub(super) run: Vec<ArmPlan>,
+}
+
+/// Reads all arms, and those that are chosen at each point of the sweep. `base` is the complete config without its arms,
+/// which are in `own`, and `root` its table.
+pub(super) fn read(
+    reader: &mut ArmReader<'_>,
+    (base, root): (&Node, &TableReader<'_>),
+    own: Option<&Node>,
+    sweep: Option<&SweepSource<'_>>,
+) -> Result<ReadArms, ConfigError> {
+    let chosen = root.optional(keys::ARMS);
+    // Read below, merged with each arm.
+    for key in ARM_KEYS.into_iter().filter(|key| *key != EXTENDS) {
+        root.optional(key);
+    }
+    if let Some(named) = root.optional(keys::ROOT) {
+        // It may be in force in no arm.
+        named.choice("skills", &base.names("skill"))?;
+    }
+    let trees = match own {
+        Some(own) => trees(base, own)?,
+        None => vec![(BASE.to_owned(), base.clone())],
+    };
+    let mut arms = Vec::new();
+    for (name, tree) in &trees {
+        arms.push(reader.read((name, 0), tree)?);
+    }
+    // What is in nobody's tree is held against the first arm's world.
+    let (first, tree) = (&arms[0], &trees[0].1);
+    let table = skills(tree)?;
+    let untrained = reader.skills(tree, first.teacher.lessons, first.skills[0].params);
+    let untrained = SkillReader { cached: Some(reader.worlds.cached(first.world)), ..untrained };
+    let trained = |name: &str| arms.iter().any(|arm| arm.skills.iter().any(|skill| skill.name == name));
+    for link in hierarchy::links(&table)?.iter().filter(|link| !trained(link.name) && link.mirror.is_none()) {
+        untrained.skill(link)?;
+    }
+    let names: Vec<&str> = arms.iter().map(|arm| arm.name.as_str()).collect();
+    let wanted = select(&names, chosen.as_ref())?;
+    let run = match sweep {
+        None => wanted.iter().map(|arm| arms[*arm].clone()).collect(),
+        Some(sweep) => {
+            let each = arms.iter().zip(&trees).enumerate();
+            let bases = each.map(|(n, (arm, (_, tree)))| Base { arm, tree: tree.clone(), run: wanted.contains(&n) });
+            expand::at_points(reader, bases.collect(), sweep)?
+        }
+    };
+    Ok(ReadArms { base: arms, run })
+}
+
+/// The name and the complete config of each arm.
+fn trees(base: &Node, own: &Node) -> Result<Vec<(String, Node)>, ConfigError> {
     let arms = (Item { name: "arm".to_owned(), node: own }).table()?.all();
+    if arms.is_empty() {
+        let hint = "add [arm.NAME], or remove [arm] to run the config as it stands";
+        return Err(own.origin.error("there are no arms", hint));
+    }
+    let names = base.names("skill");
+    let mut trees = Vec::new();
+    for (entry, item) in &arms {
+        small_name(entry, "an arm")?;
+        check(item, &names)?;
+        let mut tree = base.clone();
+        for layer in layers(&arms, item)? {
+            tree.merge(layer.clone());
+        }
+        tree.remove(EXTENDS);
+        trees.push((entry.key.clone(), tree));
+    }
+    Ok(trees)
+}
+
+/// An arm's table, and before it those of the arms that it extends.
+fn layers<'a>(arms: &[(&KeyValue, Item<'a>)], arm: &Item<'a>) -> Result<Vec<&'a Node>, ConfigError> {
     let names: Vec<&str> = arms.iter().map(|(entry, _)| entry.key.as_str()).collect();
     let mut layers = vec![arm.node];
     while let Some(extended) = layers[0].get(EXTENDS) {
@@ -37,130 +110,32 @@ fn layers<'a>(own: &'a Node, arm: &Item<'a>) -> Result<Vec<&'a Node>, ConfigErro
     Ok(layers)
 }
 
-/// What the arms of a config are read from.
-pub(super) struct Arms<'a> {
-    /// The complete config without its arms.
-    pub(super) base: &'a Node,
-    /// The tables of the arms, if there are any.
-    pub(super) own: Option<&'a Node>,
-    /// How each of them is read.
-    pub(super) reader: ArmReader<'a>,
-}
-
-/// The arms of a config.
-#[derive(Debug)]
-pub(super) struct ReadArms {
-    /// All arms without the sweep, so that a mistake in one that is not run is found too.
-    base: Vec<ArmPlan>,
-    /// The chosen arms, each at its points of the sweep.
-    pub(super) run: Vec<ArmPlan>,
-}
-
-impl ReadArms {
-    /// The arms with and without the sweep.
-    pub(super) fn all(&self) -> impl Iterator<Item = &ArmPlan> + Clone {
-        self.base.iter().chain(&self.run)
-    }
-}
-
-impl Arms<'_> {
-    /// Reads all arms, and those that are chosen at each point of the sweep.
-    pub(super) fn read(
-        &self,
-        root: &TableReader<'_>,
-        chosen: Option<&Item<'_>>,
-        sweep: Option<&SweepSource<'_>>,
-        worlds: &mut Worlds<'_>,
-    ) -> Result<ReadArms, ConfigError> {
-        // Read below, merged with each arm.
-        for key in ARM_KEYS.into_iter().filter(|key| *key != EXTENDS) {
-            root.optional(key);
+/// An arm changes skills and robots that are there; everything else is common to all arms.
+fn check(arm: &Item<'_>, skills: &[&str]) -> Result<(), ConfigError> {
+    for (entry, part) in arm.table()?.all() {
+        if !ARM_KEYS.contains(&entry.key.as_str()) {
+            let common = keys::is_group(&entry.key);
+            let message = if common {
+                format!("`{}` is the same for all arms", entry.key)
+            } else {
+                format!("unknown key `{}`", part.name)
+            };
+            let hint = match nearest(&entry.key, &ARM_KEYS) {
+                Some(best) if !common => format!("did you mean `{best}`?"),
+                _ => format!("an arm may change {}", list(&ARM_KEYS)),
+            };
+            return Err(entry.origin.error(message, hint));
         }
-        if let Some(named) = root.optional(keys::ROOT.name()) {
-            // It may be in force in no arm.
-            named.choice("skills", &set::names(self.base, "skill"))?;
-        }
-        let trees = self.trees()?;
-        if trees.is_empty() {
-            let hint = "add [arm.NAME], or remove [arm] to run the config as it stands";
-            return Err(self.own.unwrap_or(self.base).origin.error("there are no arms", hint));
-        }
-        let mut unused = UnusedKeys::default();
-        let mut base = Vec::new();
-        for (name, tree) in &trees {
-            base.push(self.reader.read((name, 0), tree, worlds, &mut unused)?);
-        }
-        // What is in nobody's tree is held against the first arm's world.
-        let first = &trees[0].1;
-        let skills = skills(first)?;
-        let reader = SkillReader {
-            cached: Some(worlds.cached(base[0].world)),
-            ..self.reader.reader(first, base[0].teacher.lessons, base[0].skills[0].params)
-        };
-        let trained = |name: &str| base.iter().any(|arm| arm.skills.iter().any(|skill| skill.name == name));
-        for link in hierarchy::links(&skills)?.iter().filter(|link| !trained(link.name) && link.mirror.is_none()) {
-            reader.skill(link, &mut unused)?;
-        }
-        let names: Vec<&str> = base.iter().map(|arm| arm.name.as_str()).collect();
-        let wanted = select(&names, chosen)?;
-        let run = match sweep {
-            None => wanted.iter().map(|arm| base[*arm].clone()).collect(),
-            Some(sweep) => {
-                let arms = base.iter().zip(&trees).enumerate();
-                let bases =
-                    arms.map(|(n, (arm, (_, tree)))| Base { arm, tree: tree.clone(), run: wanted.contains(&n) });
-                expand::at_points(&self.reader, bases.collect(), sweep, worlds, &mut unused)?
-            }
-        };
-        unused.finish()?;
-        Ok(ReadArms { base, run })
-    }
-
-    /// The name and the complete config of each arm.
-    fn trees(&self) -> Result<Vec<(String, Node)>, ConfigError> {
-        let Some(own) = self.own else { return Ok(vec![(BASE.to_owned(), self.base.clone())]) };
-        let mut trees = Vec::new();
-        for (entry, item) in (Item { name: "arm".to_owned(), node: own }).table()?.all() {
-            small_name(entry, "an arm")?;
-            self.check(&item)?;
-            let mut tree = self.base.clone();
-            for layer in layers(own, &item)? {
-                tree.merge(layer.clone());
-            }
-            tree.remove(EXTENDS);
-            trees.push((entry.key.clone(), tree));
-        }
-        Ok(trees)
-    }
-
-    /// An arm changes skills and robots that are there; everything else is common to all arms.
-    fn check(&self, item: &Item<'_>) -> Result<(), ConfigError> {
-        for (entry, part) in item.table()?.all() {
-            if !ARM_KEYS.contains(&entry.key.as_str()) {
-                let common = keys::is_group(&entry.key);
-                let message = if common {
-                    format!("`{}` is the same for all arms", entry.key)
-                } else {
-                    format!("unknown key `{}`", part.name)
-                };
-                let hint = match nearest(&entry.key, &ARM_KEYS) {
-                    Some(best) if !common => format!("did you mean `{best}`?"),
-                    _ => format!("an arm may change {}", list(&ARM_KEYS)),
-                };
-                return Err(entry.origin.error(message, hint));
-            }
-            let skills = set::names(self.base, "skill");
-            if entry.key == "skill" {
-                for (skill, _) in part.table()?.all() {
-                    if !skills.contains(&skill.key.as_str()) {
-                        let hint = suggest(&skill.key, "skills", &skills);
-                        return Err(skill.origin.error(format!("there is no skill `{}` to change", skill.key), hint));
-                    }
+        if entry.key == "skill" {
+            for (skill, _) in part.table()?.all() {
+                if !skills.contains(&skill.key.as_str()) {
+                    let hint = suggest(&skill.key, "skills", skills);
+                    return Err(skill.origin.error(format!("there is no skill `{}` to change", skill.key), hint));
                 }
             }
         }
-        Ok(())
     }
+    Ok(())
 }
 
 /// Refuses names of arms and transfers that could not stand in files and on the command line.
@@ -176,15 +151,6 @@ pub(super) fn small_name(entry: &KeyValue, what: &str) -> Result<(), ConfigError
 /// Indices of the chosen arms, in the order of the file; all if none is.
 fn select(names: &[&str], chosen: Option<&Item<'_>>) -> Result<Vec<usize>, ConfigError> {
     let Some(chosen) = chosen else { return Ok((0..names.len()).collect()) };
-    let mut wanted = BTreeSet::new();
-    for item in chosen.items()? {
-        let at = item.choice("arms", names)?;
-        if !wanted.insert(at) {
-            return Err(item.error(format!("the arm `{}` is there twice", names[at]), "name each once"));
-        }
-    }
-    if wanted.is_empty() {
-        return Err(chosen.error("no arm is chosen", format!("choose among {}, or leave `arms` out", list(names))));
-    }
-    Ok(wanted.into_iter().collect())
+    let hint = format!("choose among {}, or leave `arms` out", list(names));
+    chosen.chosen("arm", &hint, |item| item.choice("arms", names).map(|at| (at, format!("`{}`", names[at]))))
 }

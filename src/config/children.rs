@@ -5,7 +5,7 @@ use super::plan::{Action, Child, SkillPlan, Threshold};
 use crate::layout::MAX_CHILDREN;
 use crate::toml::document::Value;
 use crate::toml::error::{ConfigError, suggest};
-use crate::toml::reader::{Item, KeyedTable, argument};
+use crate::toml::reader::{Item, TableReader, argument};
 
 /// Reads the children, with where each is written. A skill is numbered by its place in `skills`.
 pub(super) fn read<'a>(item: &Item<'a>, skills: &[&str]) -> Result<Vec<(Child, Item<'a>)>, ConfigError> {
@@ -94,8 +94,8 @@ fn threshold(item: &Item<'_>) -> Result<Threshold, ConfigError> {
 }
 
 /// Reads whether a skill keeps to the chosen child, in training and in tests.
-pub(super) fn persistence(section: &KeyedTable<'_>) -> Result<(bool, bool), ConfigError> {
-    let item = section.required(&keys::SKILL_PERSISTENCE, "true")?;
+pub(super) fn persistence(section: &TableReader<'_>) -> Result<(bool, bool), ConfigError> {
+    let item = section.value(&keys::SKILL_PERSISTENCE)?;
     match &item.node.value {
         Value::Flag(flag) => Ok((*flag, *flag)),
         Value::Text(text) if text == "training" => Ok((true, false)),

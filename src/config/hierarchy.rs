@@ -6,7 +6,7 @@ use super::plan::{Action, Child};
 use crate::layout::{MAX_DEPTH, MAX_SKILLS};
 use crate::toml::document::Value;
 use crate::toml::error::{ConfigError, suggest};
-use crate::toml::reader::{Item, KeyedTable, TableReader, is_name};
+use crate::toml::reader::{Item, TableReader, is_name};
 
 /// What a skill is made of. Skills are numbered by their places in the file.
 #[derive(Debug)]
@@ -50,11 +50,11 @@ pub(super) fn links<'a>(table: &TableReader<'a>) -> Result<Vec<Link<'a>>, Config
             let message = format!("`{name}` cannot be the name of a skill: it is an action");
             return Err(entry.origin.error(message, "choose another name"));
         }
-        let section = KeyedTable(item.table()?);
-        let mirror = mirror(section.required(&keys::SKILL_MIRROR, "false")?, &names)?;
+        let section = item.table()?;
+        let mirror = mirror(section.value(&keys::SKILL_MIRROR)?, &names)?;
         let children = match mirror {
             Some(_) => Vec::new(),
-            None => children::read(&section.required(&keys::SKILL_CHILDREN, "[\"turn+15\", \"move+12\"]")?, &names)?,
+            None => children::read(&section.value(&keys::SKILL_CHILDREN)?, &names)?,
         };
         links.push(Link { name, item, children, mirror });
     }

@@ -5,19 +5,8 @@
 
 use crate::layout::params::{HyperParams, MAX_TRIALS, Noise};
 pub use crate::layout::schema::{Allowed, Bounds, DefaultSource, KeyRow};
+use crate::layout::schema::{LIST, TEXT, key_rows};
 use Allowed::{Choice, Flag, Number, Other, Whole};
-
-macro_rules! keys {
-    ($($name:ident = $path:literal, $default:expr, $allowed:expr, $source:ident, $doc:literal;)*) => {
-        $(
-            #[doc = concat!("`", $path, "`: ", $doc)]
-            pub const $name: KeyRow = KeyRow {
-                path: $path, default: $default, allowed: $allowed, source: DefaultSource::$source, doc: $doc,
-            };
-        )*
-        const OTHERS: &[KeyRow] = &[$($name),*];
-    };
-}
 
 /// All keys: those of a robot and of learning first, skills and what follows from them last.
 pub fn all() -> impl Iterator<Item = &'static KeyRow> {
@@ -32,11 +21,28 @@ pub fn is_group(first: &str) -> bool {
     all().any(|key| key.path.split('.').next() == Some(first))
 }
 
-const TEXT: &[&str] = &["string"];
-const LIST: &[&str] = &["array"];
+/// Whether a row's path, in which `*` stands for any name, is this one. What lies below an arm, a point of a sweep or a
+/// skill is named as it is elsewhere.
+pub(super) fn is(row: &str, path: &[&str]) -> bool {
+    let same = |path: &[&str]| {
+        let parts = row.split('.');
+        parts.clone().count() == path.len() && parts.zip(path).all(|(part, name)| part == "*" || part == *name)
+    };
+    let below_skill = |path: &[&str]| match path {
+        ["skill", _, learning @ ..] if learning.first() == Some(&"learning") => same(path) || same(learning),
+        _ => same(path),
+    };
+    match path {
+        ["arm", _, inner @ ..] | ["sweep", inner @ ..] => below_skill(path) || below_skill(inner),
+        _ => below_skill(path),
+    }
+}
+
 const TABLE: &[&str] = &["object"];
 
-keys! {
+key_rows! {
+    /// The keys of this module.
+    OTHERS:
     NAME = "name", None, Other(TEXT, "letters, digits, - and _"), Ours, "Names the run folder; the file's stem if left out.";
     TITLE = "title", Some("''"), Other(TEXT, "text"), Ours, "One line that says what the experiment is for.";
     WORLD = "world", None, Other(TEXT, "a path"), Ours, "The world file, relative to the config file; required.";

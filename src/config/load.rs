@@ -1,37 +1,40 @@
 //! From a config file and what the command line adds to a [`Plan`].
 //!
 //! Layers, each over the one before: defaults, the config that the file extends, the file, `--set`, an arm's own table
-//! (into which `--set arm.NAME.key=value` goes first), and the values at a point of the sweep. Within a skill, `skill.NAME.learning` lies over `learning`, also over an
-//! arm's: what names the skill is more specific.
+//! (into which `--set arm.NAME.key=value` goes first), and the values at a point of the sweep. Within a skill,
+//! `skill.NAME.learning` lies over `learning`, also over an arm's: what names the skill is more specific.
 
 use super::arm::ArmReader;
-use super::arms::Arms;
 use super::keys::{self, KeyRow};
 use super::plan::{Evaluate, Plan};
+use super::unused_keys::UnusedKeys;
 use super::worlds::Worlds;
-use super::{renamed, seeds, set, sweep, transfer};
+use super::{arms, renamed, seeds, set, sweep, transfer};
 use crate::layout::params::MAX_TRIALS;
-use crate::toml::document::{Node, SWEEP, SourceSpan, SourceText, Value};
+use crate::toml::document::{Node, SWEEP, SourceSpan, Value};
 use crate::toml::error::ConfigError;
 use crate::toml::printer;
-use crate::toml::reader::{Item, KeyedTable, TableReader};
+use crate::toml::reader::{Item, TableReader};
 use crate::toml::{Files, OsFiles};
 use std::path::Path;
-use std::sync::Arc;
 
-/// What the command line changes in a config.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+/// What the command line changes in a config; there, these are options. A later `--set` wins over an earlier one. One on a
+/// base key wins over the file's base key, but an arm's own override of that key, being more specific, still holds in that
+/// arm. `--seeds` wins over `--set`, and `--arm` over the key `arms`.
+#[derive(Debug, Clone, Default, PartialEq, Eq, clap::Args)]
 pub struct Overrides {
-    /// `key=value` of each `--set`, in order: `learning.learning_rate=0.01`, `skill.dock.trials=20`,
-    /// `arm.taught-sgd.learning.learning_rate=0.1`. A later one wins. One on a base key wins over the file's base key, but an
-    /// arm's own override of that key, being more specific, still holds in that arm.
-    pub set: Vec<String>,
-    /// The value of `--seeds`, which wins over the file and over `--set`.
+    /// Seeds, instead of the config's: `0..7` (7 left out), `5`, `1,2,5..9`.
+    #[arg(long, value_name = "SEEDS")]
     pub seeds: Option<String>,
-    /// The values of `--arm`: only these arms are run, whatever the key `arms` says.
+    /// Runs this arm only; may be given several times.
+    #[arg(long = "arm", value_name = "ARM")]
     pub arms: Vec<String>,
-    /// The values of `--point`: only these points of the sweep are run.
+    /// Runs this point of the sweep only, counted from 0 as in the tables; may be given several times.
+    #[arg(long = "point", value_name = "N")]
     pub points: Vec<u32>,
+    /// Sets a key of the config, such as `learning.learning_rate=0.01`; may be given several times.
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
 }
 
 impl Overrides {
@@ -40,8 +43,9 @@ impl Overrides {
         for argument in &self.set {
             set::apply(tree, argument)?;
         }
+        let typed = |value: Value, argument: String| Node { value, origin: SourceSpan::Argument(argument) };
         if let Some(text) = &self.seeds {
-            tree.put(keys::SEEDS.name(), typed(Value::Text(text.clone()), seeds::argument(text)));
+            tree.put(keys::SEEDS.name(), Node::text(text, &seeds::argument(text)));
         }
         if !self.arms.is_empty() {
             let arms = self.arms.iter().map(|arm| typed(Value::Text(arm.clone()), format!("--arm {arm}")));
@@ -61,11 +65,6 @@ impl Overrides {
     }
 }
 
-/// A value from the command line.
-fn typed(value: Value, argument: String) -> Node {
-    Node { value, origin: SourceSpan { source: Arc::new(SourceText::Argument(argument)), span: 0..0 } }
-}
-
 /// Reads a config file, the world files that it names, and the command line's changes.
 ///
 /// # Errors
@@ -82,45 +81,44 @@ pub fn load_from(files: &dyn Files, path: &Path, overrides: &Overrides) -> Resul
     let mut tree = read(files, path)?;
     overrides.apply(&mut tree)?;
     renamed::refuse(&tree)?;
-    let mut own = tree.remove("arm").map(|entry| entry.node);
-    let mut transferred = tree.remove("transfer").map(|entry| entry.node);
-    let mut swept = tree.remove(SWEEP).map(|entry| entry.node);
+    let mut take = |key: &str| tree.remove(key).map(|entry| entry.node);
+    let (own, transferred, swept) = (take("arm"), take("transfer"), take(SWEEP));
     let mut base = defaults(&tree)?;
     base.merge(tree);
 
     let root = Item::root(&base).table()?;
-    let name = match root.optional(keys::NAME.name()) {
+    let name = match root.optional(keys::NAME) {
         Some(item) => item.short_name()?.to_owned(),
         None => path.file_stem().map_or_else(|| "config".to_owned(), |stem| stem.to_string_lossy().into_owned()),
     };
     let mut worlds = Worlds::new(files, path);
-    worlds.place(&root.required(keys::WORLD.name(), "\"worlds/office.toml\"")?)?;
+    worlds.place(&root.required(keys::WORLD, "\"worlds/office.toml\"")?)?;
     let evaluate = evaluate(&root)?;
-    let section = KeyedTable(root);
-    let run_seed = section.word(&keys::SEED)?;
+    let run_seed = root.word(&keys::SEED)?;
     let sweep = sweep::read(swept.as_ref(), &base, run_seed)?;
-    let chosen = section.0.optional(keys::ARMS.name());
-    let reader = ArmReader { eval_at: &evaluate.at };
-    let arms = Arms { base: &base, own: own.as_ref(), reader };
-    let arms = arms.read(&section.0, chosen.as_ref(), sweep.as_ref(), &mut worlds)?;
+    let mut reader = ArmReader { eval_at: &evaluate.at, worlds, unused: UnusedKeys::default() };
+    let arms = arms::read(&mut reader, (&base, &root), own.as_ref(), sweep.as_ref())?;
+    let ArmReader { mut worlds, unused, .. } = reader;
+    unused.finish()?;
     let alterations = match &transferred {
-        Some(transferred) => transfer::read(transferred, &base, arms.all(), &mut worlds)?,
+        Some(transferred) => transfer::read(transferred, &base, arms.base.iter().chain(&arms.run), &mut worlds)?,
         None => Vec::new(),
     };
-    let title = section.required(&keys::TITLE, "\"...\"")?.text()?.to_owned();
-    let seeds = seeds::read(&section.required(&keys::SEEDS, "\"0..7\"")?)?;
-    section.0.finish()?;
-
+    let title = root.value(&keys::TITLE)?.text()?.to_owned();
+    let seeds = seeds::read(&root.value(&keys::SEEDS)?)?;
+    root.finish()?;
     let sweep = sweep.map(|sweep| sweep.plan(&mut worlds)).transpose()?;
-    for group in own.iter_mut().chain(&mut transferred) {
-        worlds.rename(group)?;
+
+    base.put(keys::NAME.name(), Node::text(&name, &base.origin));
+    for (key, group) in [(SWEEP, swept), ("arm", own), ("transfer", transferred)] {
+        if let Some(group) = group {
+            base.put(key, group);
+        }
     }
-    if let Some(swept) = &mut swept {
-        sweep::rename(swept, &mut worlds)?;
-    }
-    let worlds = worlds.placed;
-    let resolved = resolve(base, (&name, &worlds[0].file), [(SWEEP, swept), ("arm", own), ("transfer", transferred)]);
-    let arms = arms.run;
+    worlds.rename(&mut base, false);
+    let comment = "# Resolved by skilltree: defaults, config file and command line together.";
+    let resolved = format!("{comment}\n{}", printer::document(&base));
+    let (worlds, arms) = (worlds.placed, arms.run);
     Ok(Plan { name, title, run_seed, seeds, worlds, arms, sweep, alterations, evaluate, resolved })
 }
 
@@ -150,56 +148,33 @@ fn read(files: &dyn Files, path: &Path) -> Result<Node, ConfigError> {
 
 /// The tree of all defaults, with one table for each skill of the file, in its order.
 fn defaults(tree: &Node) -> Result<Node, ConfigError> {
-    let source = Arc::new(SourceText::Default("the whole config"));
-    let mut out = Node::empty(SourceSpan { source, span: 0..0 });
-    let skills = set::names(tree, "skill");
+    let mut out = Node::empty(SourceSpan::Default("the whole config"));
     for key in keys::all() {
         let Some(text) = key.default else { continue };
         let parts: Vec<&str> = key.path.split('.').collect();
-        match parts.as_slice() {
+        match parts[..] {
             ["skill", _, last] => {
-                for name in &skills {
+                for name in tree.names("skill") {
                     out.merge(default(key, text, &["skill", name, last])?);
                 }
             }
-            path => out.merge(default(key, text, path)?),
+            _ => out.merge(default(key, text, &parts)?),
         }
     }
     Ok(out)
 }
 
 fn default(key: &KeyRow, text: &str, path: &[&str]) -> Result<Node, ConfigError> {
-    let source = Arc::new(SourceText::Default(key.path));
-    let origin = SourceSpan { source: Arc::clone(&source), span: 0..0 };
+    let origin = SourceSpan::Default(key.path);
     // A test reads every default; a broken one is still reported and not a panic.
-    let broken = || Err(origin.error(format!("`{text}` is not TOML"), "please report this"));
-    let mut node = Node::parse_value(text, &source).unwrap_or_else(broken)?;
-    for part in path.iter().rev() {
-        let mut table = Node::empty(origin.clone());
-        table.put(part, node);
-        node = table;
-    }
-    Ok(node)
+    let broken = || origin.error(format!("`{text}` is not TOML"), "please report this");
+    Ok(Node::parse_value(text, &origin)?.ok_or_else(broken)?.under(path))
 }
 
 fn evaluate(root: &TableReader<'_>) -> Result<Evaluate, ConfigError> {
-    let section = KeyedTable(root.required("evaluate", "{}")?.table()?);
-    let at = section.required(&keys::EVALUATE_AT, "[0, 100]")?.ascending(MAX_TRIALS)?;
-    let evaluate = Evaluate { at, episodes: section.word(&keys::EVALUATE_EPISODES)? };
-    section.0.finish()?;
+    let table = root.required("evaluate", "{}")?.table()?;
+    let at = table.value(&keys::EVALUATE_AT)?.ascending(MAX_TRIALS)?;
+    let evaluate = Evaluate { at, episodes: table.word(&keys::EVALUATE_EPISODES)? };
+    table.finish()?;
     Ok(evaluate)
-}
-
-/// The text that gives this plan again from a run folder, where the worlds lie under the names that they have here.
-fn resolve(mut base: Node, (name, world): (&str, &str), groups: [(&str, Option<Node>); 3]) -> String {
-    let origin = base.origin.clone();
-    let text = |text: &str| Node { value: Value::Text(text.to_owned()), origin: origin.clone() };
-    base.put(keys::NAME.name(), text(name));
-    base.put(keys::WORLD.name(), text(world));
-    for (key, group) in groups {
-        if let Some(group) = group {
-            base.put(key, group);
-        }
-    }
-    format!("# Resolved by skilltree: defaults, config file and command line together.\n{}", printer::document(&base))
 }

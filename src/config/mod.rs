@@ -23,7 +23,6 @@ mod seeds;
 mod set;
 mod skill;
 mod sweep;
-mod teacher;
 mod transfer;
 mod unused_keys;
 mod worlds;

@@ -4,52 +4,48 @@ use super::events::event_names;
 use super::keys::{self, Allowed, DefaultSource, KeyRow};
 use crate::layout::{Action, Event, Input, RegionEvent};
 use crate::world;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 use std::fmt::Write;
 
 /// The keys that match a pattern, in words; all without one. A pattern is part of a path or of a sentence, in any case,
 /// or the path of one skill's or arm's key, such as `skill.dock.trials`.
 pub fn text(pattern: &str) -> String {
-    let mut out = String::new();
-    section(&mut out, "Config files", keys::all(), pattern);
-    let docs = Event::ALL.iter().map(|event| event.doc()).chain(RegionEvent::ALL.iter().map(|event| event.doc()));
-    let names = [
-        ("Actions", Action::ALL.iter().map(|a| (a.name().to_owned(), a.doc())).collect::<Vec<_>>()),
-        ("Events", event_names().into_iter().zip(docs).collect()),
-        ("Inputs", Input::ALL.iter().map(|i| (format!("{} ({})", i.name(), i.width_in_words()), i.doc())).collect()),
+    let rows = |rows: &mut dyn Iterator<Item = &'static KeyRow>| -> Vec<(String, String)> {
+        rows.filter(|row| matches(row, pattern)).map(entry).collect()
+    };
+    let names = |title: &'static str, names: Vec<(String, &str)>| {
+        let wanted = |(name, doc): &(String, &str)| [title, name, doc].iter().any(|text| holds(text, pattern));
+        let found = names.into_iter().filter(wanted).map(|(name, doc)| (name, doc.trim().to_owned()));
+        (title, found.collect())
+    };
+    let events = Event::ALL.iter().map(|event| event.doc()).chain(RegionEvent::ALL.iter().map(|event| event.doc()));
+    let width = |input: &Input| format!("{} ({})", input.name(), input.width_in_words());
+    let sections = [
+        ("Config files", rows(&mut keys::all())),
+        names("Actions", Action::ALL.iter().map(|action| (action.name().to_owned(), action.doc())).collect()),
+        names("Events", event_names().into_iter().zip(events).collect()),
+        names("Inputs", Input::ALL.iter().map(|input| (width(input), input.doc())).collect()),
+        ("World files", rows(&mut world::keys::ALL.iter())),
     ];
-    for (title, rows) in names {
-        let wanted = |text: &str| holds(text, pattern);
-        let found: Vec<_> =
-            rows.into_iter().filter(|(name, doc)| wanted(title) || wanted(name) || wanted(doc)).collect();
-        if !found.is_empty() {
-            let _ = writeln!(out, "{title}\n");
-        }
-        for (name, doc) in found {
-            let _ = writeln!(out, "  {name}\n      {}\n", doc.trim());
+    let mut out = String::new();
+    for (title, entries) in sections.iter().filter(|(_, entries)| !entries.is_empty()) {
+        // Writing to a String cannot fail.
+        let _ = writeln!(out, "{title}\n");
+        for (name, said) in entries {
+            let _ = writeln!(out, "  {name}\n      {said}\n");
         }
     }
-    section(&mut out, "World files", world::keys::ALL.iter(), pattern);
     out
 }
 
-fn section(out: &mut String, title: &str, rows: impl Iterator<Item = &'static KeyRow>, pattern: &str) {
-    let found: Vec<&KeyRow> = rows.filter(|row| matches(row, pattern)).collect();
-    if !found.is_empty() {
-        // Writing to a String cannot fail.
-        let _ = writeln!(out, "{title}\n");
-    }
-    for row in found {
-        let default = row.default.map_or_else(String::new, |text| format!(" = {text}"));
-        let source = match (row.default, row.source) {
-            (None, _) => "",
-            (_, DefaultSource::Paper) => "  (default: paper)",
-            (_, DefaultSource::Ours) => "  (default: ours)",
-        };
-        let _ = writeln!(out, "  {}{default}{source}", row.path);
-        let _ = writeln!(out, "      {}", row.allowed);
-        let _ = writeln!(out, "      {}\n", row.doc.trim());
-    }
+/// A key with its default, and what is said of it.
+fn entry(row: &KeyRow) -> (String, String) {
+    let source = match row.source {
+        DefaultSource::Paper => "paper",
+        DefaultSource::Ours => "ours",
+    };
+    let default = row.default.map_or_else(String::new, |text| format!(" = {text}  (default: {source})"));
+    (format!("{}{default}", row.path), format!("{}\n      {}", row.allowed, row.doc.trim()))
 }
 
 fn holds(text: &str, pattern: &str) -> bool {
@@ -57,21 +53,7 @@ fn holds(text: &str, pattern: &str) -> bool {
 }
 
 fn matches(row: &KeyRow, pattern: &str) -> bool {
-    // What lies below an arm, a point of a sweep or a skill is named as it is elsewhere.
-    let inner = |path: &str| {
-        let names: Vec<&str> = path.split('.').collect();
-        let parts: Vec<&str> = row.path.split('.').collect();
-        let same = |names: &[&str]| {
-            parts.len() == names.len() && parts.iter().zip(names).all(|(part, name)| *part == "*" || part == name)
-        };
-        match names[..] {
-            ["skill", _, "learning", ..] => same(&names[2..]),
-            _ => same(&names),
-        }
-    };
-    let arm = pattern.strip_prefix("arm.").and_then(|rest| rest.split_once('.')).map(|(_, rest)| rest);
-    let paths = [Some(pattern), arm, pattern.strip_prefix("sweep.")];
-    holds(row.path, pattern) || holds(row.doc, pattern) || paths.into_iter().flatten().any(inner)
+    holds(row.path, pattern) || holds(row.doc, pattern) || keys::is(row.path, &pattern.split('.').collect::<Vec<_>>())
 }
 
 /// A JSON schema of config files, for editors that complete and check TOML.
@@ -137,33 +119,25 @@ fn insert(node: &mut Value, path: &[&str], leaf: Value) {
 }
 
 fn leaf(row: &KeyRow) -> Value {
-    let mut out = Map::new();
-    match row.allowed {
+    let mut out = match row.allowed {
         Allowed::Number(bounds) => {
-            out.insert("type".to_owned(), json!("number"));
             let low = if bounds.open_low { "exclusiveMinimum" } else { "minimum" };
             let high = if bounds.open_high { "exclusiveMaximum" } else { "maximum" };
-            out.insert(low.to_owned(), json!(bounds.low));
-            out.insert(high.to_owned(), json!(bounds.high));
+            json!({ "type": "number", (low): bounds.low, (high): bounds.high })
         }
-        Allowed::Whole(low, high) => {
-            out.insert("type".to_owned(), json!("integer"));
-            out.insert("minimum".to_owned(), json!(low));
-            out.insert("maximum".to_owned(), json!(high));
-        }
-        Allowed::Flag => drop(out.insert("type".to_owned(), json!("boolean"))),
-        Allowed::Choice(words) => drop(out.insert("enum".to_owned(), json!(words))),
-        Allowed::Other(types, _) => drop(out.insert("type".to_owned(), json!(types))),
-    }
-    let said = match row.allowed {
-        Allowed::Other(_, words) => format!("{} ({words})", row.doc.trim()),
-        _ => row.doc.trim().to_owned(),
+        Allowed::Whole(low, high) => json!({ "type": "integer", "minimum": low, "maximum": high }),
+        Allowed::Flag => json!({ "type": "boolean" }),
+        Allowed::Choice(words) => json!({ "enum": words }),
+        Allowed::Other(types, _) => json!({ "type": types }),
     };
-    out.insert("description".to_owned(), json!(said));
+    out["description"] = match row.allowed {
+        Allowed::Other(_, words) => json!(format!("{} ({words})", row.doc.trim())),
+        _ => json!(row.doc.trim()),
+    };
     let parsed = row.default.and_then(|text| toml::from_str::<toml::Table>(&format!("value = {text}")).ok());
     let default = parsed.and_then(|mut table| table.remove("value"));
     if let Some(default) = default.and_then(|value| serde_json::to_value(value).ok()) {
-        out.insert("default".to_owned(), default);
+        out["default"] = default;
     }
-    Value::Object(out)
+    out
 }

@@ -1,5 +1,6 @@
 //! Keys and words of earlier versions, and what they are called now.
 
+use super::keys;
 use crate::toml::document::{KeyValue, Node, Value};
 use crate::toml::error::ConfigError;
 
@@ -34,42 +35,29 @@ const WORDS: &[(&str, &str, &str)] = &[("skill.*.policy", "ordered", "fixed-prio
 
 /// Refuses the first old key or word, with the new one as the hint.
 pub(super) fn refuse(tree: &Node) -> Result<(), ConfigError> {
-    walk(tree, &mut Vec::new())
+    walk(tree, &[])
 }
 
-fn walk<'a>(node: &'a Node, path: &mut Vec<&'a str>) -> Result<(), ConfigError> {
-    let Value::Table(entries) = &node.value else { return Ok(()) };
-    for entry in entries {
-        path.push(&entry.key);
-        check(entry, path)?;
-        walk(&entry.node, path)?;
-        path.pop();
+fn walk(node: &Node, above: &[&str]) -> Result<(), ConfigError> {
+    for entry in node.entries() {
+        let path = [above, &[entry.key.as_str()]].concat();
+        check(entry, &path)?;
+        walk(&entry.node, &path)?;
     }
     Ok(())
 }
 
 fn check(entry: &KeyValue, path: &[&str]) -> Result<(), ConfigError> {
-    let is = |pattern: &str| {
-        let parts = pattern.split('.');
-        parts.clone().count() == path.len() && parts.zip(path).all(|(part, name)| part == "*" || part == *name)
-    };
-    // What an arm, a point of a sweep and a skill may change is named as it is elsewhere.
-    let at = |pattern: &str| {
-        let inner = pattern.strip_prefix("learning.").map(|name| format!("skill.*.learning.{name}"));
-        let all = [Some(pattern.to_owned()), inner];
-        all.into_iter().flatten().any(|path| is(&path) || is(&format!("arm.*.{path}")) || is(&format!("sweep.{path}")))
-    };
-    if let Some((_, new)) = KEYS.iter().find(|(old, _)| at(old)) {
+    if let Some((_, new)) = KEYS.iter().find(|(old, _)| keys::is(old, path)) {
         let message = format!("`{}` has another name now", path.join("."));
         return Err(entry.origin.error(message, format!("write `{new}`")));
     }
-    let written = |node: &Node, old: &str| matches!(&node.value, Value::Text(text) if text == old);
-    for (_, old, new) in WORDS.iter().filter(|(key, ..)| at(key)) {
-        let listed = match &entry.node.value {
-            Value::List(items) => items.iter().find(|item| written(item, old)),
-            _ => None,
+    for (_, old, new) in WORDS.iter().filter(|(key, ..)| keys::is(key, path)) {
+        let written = match &entry.node.value {
+            Value::List(items) => &items[..],
+            _ => std::slice::from_ref(&entry.node),
         };
-        if let Some(node) = listed.or_else(|| Some(&entry.node).filter(|node| written(node, old))) {
+        if let Some(node) = written.iter().find(|node| matches!(&node.value, Value::Text(text) if text == old)) {
             let message = format!("`{old}` of `{}` has another name now", path.join("."));
             return Err(node.origin.error(message, format!("write \"{new}\"")));
         }

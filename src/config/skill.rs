@@ -1,6 +1,6 @@
 //! The keys of one `[skill.NAME]` table.
 
-use super::events::{Complain, EventReader};
+use super::events::EventReader;
 use super::hierarchy::Link;
 use super::keys;
 use super::plan::{Child, SkillPlan, Threshold};
@@ -10,12 +10,12 @@ use super::{children, inputs, mirror};
 use crate::layout::choices::OPTIMISER_SGD;
 use crate::layout::params::{ALWAYS, MAX_TRIALS};
 use crate::layout::{HyperParams, MAX_CHILDREN, MAX_STARTS};
-use crate::toml::document::{Node, Value};
+use crate::toml::document::{Node, SourceSpan, Value};
 use crate::toml::error::{ConfigError, suggest};
-use crate::toml::reader::{Item, KeyedTable};
+use crate::toml::reader::{Item, TableReader};
 
 /// What the skills of an arm are read with, besides their own tables.
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct SkillReader<'a> {
     /// What `skill.NAME.learning` lies over.
     pub(super) learning: Option<&'a Node>,
@@ -30,28 +30,29 @@ pub(super) struct SkillReader<'a> {
     pub(super) eval_at: &'a [u32],
     /// The arm's skills, by their places in the file.
     pub(super) order: &'a [usize],
+    pub(super) unused: &'a UnusedKeys,
 }
 
-impl SkillReader<'_> {
+impl<'a> SkillReader<'a> {
     /// Reads a skill that is no mirror image.
-    pub(super) fn skill(&self, link: &Link<'_>, unused: &mut UnusedKeys) -> Result<SkillPlan, ConfigError> {
+    pub(super) fn skill(&self, link: &Link<'a>) -> Result<SkillPlan, ConfigError> {
         let (cached, world) = (self.cached, self.cached.map(|cached| cached.world));
-        let section = KeyedTable(link.item.table()?);
-        let asked = section.required(&keys::SKILL_INPUTS, "[\"sonar\", \"light\", \"bumpers\"]")?;
+        let section = link.item.table()?;
+        let asked = section.required(keys::SKILL_INPUTS, "[\"sonar\", \"light\", \"bumpers\"]")?;
         let inputs = inputs::read(&asked, world)?;
         // These two are in the link already.
-        section.0.optional(keys::SKILL_CHILDREN.name());
-        section.0.optional(keys::SKILL_MIRROR.name());
-        let applicable = children::applicable(&section.required(&keys::SKILL_APPLICABLE, "{}")?, &link.children)?;
-        let starts = starts(&section.required(&keys::SKILL_STARTS, "\"anywhere\"")?, cached)?;
-        let tests = section.required(&keys::SKILL_EVAL_STARTS, "\"anywhere\"")?;
-        let eval_starts = region(tests.text()?, &|message, hint| tests.error(message, hint), cached)?;
+        section.optional(keys::SKILL_CHILDREN);
+        section.optional(keys::SKILL_MIRROR);
+        let applicable = children::applicable(&section.value(&keys::SKILL_APPLICABLE)?, &link.children)?;
+        let starts = starts(&section.value(&keys::SKILL_STARTS)?, cached)?;
+        let tests = section.value(&keys::SKILL_EVAL_STARTS)?;
+        let eval_starts = region(tests.text()?, tests.origin(), cached)?;
         let mut events = EventReader::new(world);
-        let goal = events.goal(&section.required(&keys::SKILL_GOAL, "[\"docked\"]")?)?;
+        let goal = events.goal(&section.value(&keys::SKILL_GOAL)?)?;
         let oracle = oracle(&section, link)?;
-        let mut params = self.learning(&section, &link.item, unused)?;
+        let mut params = self.learning(&section, &link.item)?;
         section.fill("skill.*.", HyperParams::rows(), &mut params)?;
-        params.reward = events.reward(&section.required(&keys::SKILL_REWARD, "{ docked = 100, collision = -10 }")?)?;
+        params.reward = events.reward(&section.required(keys::SKILL_REWARD, "{ docked = 100, collision = -10 }")?)?;
         params.threshold = [ALWAYS; MAX_CHILDREN];
         for (value, own) in params.threshold.iter_mut().zip(&applicable) {
             // A learned one is always exceeded until it is known.
@@ -83,25 +84,25 @@ impl SkillReader<'_> {
         if skill.params.mirror_replays == 1 {
             mirror::check_replays(&skill, &self.mirror_replays(&link.item))?;
         }
-        section.0.finish()?;
+        section.finish()?;
         Ok(skill)
     }
 
     /// Checks the table of a mirror image for misspelt keys. They are what the skill is where an arm says
     /// `mirror = false`; until then `eval_at` alone is used, and returned if it is there.
-    pub(super) fn unused(&self, link: &Link<'_>, unused: &mut UnusedKeys) -> Result<Option<Vec<u32>>, ConfigError> {
-        let section = KeyedTable(link.item.table()?);
+    pub(super) fn unused(&self, link: &Link<'_>) -> Result<Option<Vec<u32>>, ConfigError> {
+        let section = link.item.table()?;
         for key in keys::all().filter(|key| key.path.starts_with("skill.*.")) {
-            section.0.optional(key.name());
+            section.optional(key);
         }
-        self.learning(&section, &link.item, unused)?;
+        self.learning(&section, &link.item)?;
         let eval_at = self.eval_at(&section)?;
-        section.0.finish()?;
+        section.finish()?;
         Ok(eval_at)
     }
 
-    fn eval_at(&self, section: &KeyedTable<'_>) -> Result<Option<Vec<u32>>, ConfigError> {
-        section.0.optional(keys::SKILL_EVAL_AT.name()).map(|item| item.ascending(MAX_TRIALS)).transpose()
+    fn eval_at(&self, section: &TableReader<'_>) -> Result<Option<Vec<u32>>, ConfigError> {
+        section.optional(keys::SKILL_EVAL_AT).map(|item| item.ascending(MAX_TRIALS)).transpose()
     }
 
     /// The place of a skill among the arm's own; below a skill that the arm does not train it has none, and stays.
@@ -116,8 +117,8 @@ impl SkillReader<'_> {
         }
     }
 
-    fn check_lessons(&self, lessons: u32, section: &KeyedTable<'_>, link: &Link<'_>) -> Result<(), ConfigError> {
-        let item = section.0.required("lessons", "10")?;
+    fn check_lessons(&self, lessons: u32, section: &TableReader<'_>, link: &Link<'_>) -> Result<(), ConfigError> {
+        let item = section.required("lessons", "10")?;
         if lessons > 0 && link.skills().next().is_some() {
             let message = format!("`{}` cannot have lessons: nobody demonstrates skills", link.name);
             return Err(item.error(message, "set lessons = 0; the skills that it chooses among can be taught"));
@@ -130,36 +131,29 @@ impl SkillReader<'_> {
     }
 
     /// The numbers of learning, with those of the robot; all others are 0.
-    fn learning(
-        &self,
-        section: &KeyedTable<'_>,
-        skill: &Item<'_>,
-        unused: &mut UnusedKeys,
-    ) -> Result<HyperParams, ConfigError> {
+    fn learning(&self, section: &TableReader<'_>, skill: &Item<'_>) -> Result<HyperParams, ConfigError> {
         let mut merged = self.learning.cloned().unwrap_or_else(|| Node::empty(skill.origin().clone()));
-        let over = section.0.optional("learning");
+        let over = section.optional("learning");
         if let Some(over) = &over {
             over.table()?;
             merged.merge(over.node.clone());
         }
         let name = over.map_or_else(|| "learning".to_owned(), |over| over.name);
-        let section = KeyedTable(Item { name, node: &merged }.table()?);
+        let section = (Item { name, node: &merged }).table()?;
         let mut params = self.robot;
         section.fill("learning.", HyperParams::rows(), &mut params)?;
-        unused.note(&section, params.optimiser)?;
-        let unset = section.0.optional("learning_rate").is_none_or(|item| item.origin().is_default());
+        self.unused.note(&section, params.optimiser)?;
+        let unset = section.optional("learning_rate").is_none_or(|item| item.origin().is_default());
         if params.optimiser == OPTIMISER_SGD && unset {
-            let chosen = section.0.required("optimiser", "\"sgd\"")?;
+            let chosen = section.required("optimiser", "\"sgd\"")?;
             return Err(chosen.error("sgd has no default learning rate", "add `learning_rate = 0.15` beside it"));
         }
-        section.0.finish()?;
+        section.finish()?;
         params.derive();
         Ok(params)
     }
-}
 
-/// Where replays in a mirror are asked for: in the skill's own table, or in the one below it.
-impl<'a> SkillReader<'a> {
+    /// Where replays in a mirror are asked for: in the skill's own table, or in the one below it.
     fn mirror_replays(&self, skill: &Item<'a>) -> Item<'a> {
         let key = "mirror_replays";
         let own = skill.node.get("learning").and_then(|learning| learning.get(key));
@@ -168,8 +162,8 @@ impl<'a> SkillReader<'a> {
     }
 }
 
-fn oracle(section: &KeyedTable<'_>, link: &Link<'_>) -> Result<bool, ConfigError> {
-    let item = section.required(&keys::SKILL_ORACLE, "false")?;
+fn oracle(section: &TableReader<'_>, link: &Link<'_>) -> Result<bool, ConfigError> {
+    let item = section.value(&keys::SKILL_ORACLE)?;
     let oracle = item.flag()?;
     if oracle && link.skills().next().is_some() {
         let message = format!("`{}` chooses among skills and cannot be an oracle", link.name);
@@ -181,7 +175,7 @@ fn oracle(section: &KeyedTable<'_>, link: &Link<'_>) -> Result<bool, ConfigError
 }
 
 /// The name of a region in which a trial can start.
-fn region(name: &str, place: &Complain<'_>, cached: Option<CachedWorld<'_>>) -> Result<String, ConfigError> {
+fn region(name: &str, origin: &SourceSpan, cached: Option<CachedWorld<'_>>) -> Result<String, ConfigError> {
     let Some(cached) = cached else { return Ok(name.to_owned()) };
     let world = cached.world;
     let names = world.region_names();
@@ -189,11 +183,11 @@ fn region(name: &str, place: &Complain<'_>, cached: Option<CachedWorld<'_>>) -> 
     match cached.region_is_empty(name) {
         None => {
             let message = format!("the world `{}` has no region `{name}`", world.name);
-            Err(place(message, suggest(name, "regions", &names)))
+            Err(origin.error(message, suggest(name, "regions", &names)))
         }
         Some(true) => {
             let hint = "no part of it is 14 inches from everything solid; enlarge it or choose another one";
-            Err(place(format!("the robot fits nowhere in the region `{name}`"), hint.to_owned()))
+            Err(origin.error(format!("the robot fits nowhere in the region `{name}`"), hint))
         }
         Some(false) => Ok(name.to_owned()),
     }
@@ -202,7 +196,7 @@ fn region(name: &str, place: &Complain<'_>, cached: Option<CachedWorld<'_>>) -> 
 /// At least one region with its share.
 fn starts(item: &Item<'_>, cached: Option<CachedWorld<'_>>) -> Result<Vec<(String, f32)>, ConfigError> {
     if let Value::Text(name) = &item.node.value {
-        return Ok(vec![(region(name, &|message, hint| item.error(message, hint), cached)?, 1.0)]);
+        return Ok(vec![(region(name, item.origin(), cached)?, 1.0)]);
     }
     if !matches!(item.node.value, Value::Table(_)) {
         let message = format!("`{}` must be a region or a table of shares, not {}", item.name, item.node.kind());
@@ -211,7 +205,7 @@ fn starts(item: &Item<'_>, cached: Option<CachedWorld<'_>>) -> Result<Vec<(Strin
     let mut starts = Vec::new();
     let mut sum = 0.0;
     for (entry, share) in item.table()?.all() {
-        let name = region(&entry.key, &|message, hint| entry.origin.error(message, hint), cached)?;
+        let name = region(&entry.key, &entry.origin, cached)?;
         sum += share.double(keys::START_SHARE)?;
         starts.push((name, share.number(keys::START_SHARE)?));
     }

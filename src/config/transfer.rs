@@ -1,4 +1,8 @@
-//! Other circumstances in which the roots that were learned are tested once more.
+//! The table `transfer`: what was learned is tested once more, without training, in another floor plan, with other noise,
+//! or both (paper, section VII).
+//!
+//! The root skill of every arm is tested after its last trial, with its nets as they are. Rooms are inputs of nets and
+//! rows of results, by their order: another floor plan must have the same ones.
 
 use super::arms::small_name;
 use super::events::lacking_region;
@@ -10,7 +14,7 @@ use crate::toml::error::ConfigError;
 use crate::toml::reader::Item;
 use crate::world::World;
 
-/// Reads the table `transfer`. Every arm's root must be able to do its test in each of its worlds.
+/// Reads the table. A test in which some arm's root could not start or not reach its goal is refused.
 pub(super) fn read<'a>(
     altered: &Node,
     base: &Node,
@@ -21,7 +25,7 @@ pub(super) fn read<'a>(
     for (entry, item) in (Item { name: "transfer".to_owned(), node: altered }).table()?.all() {
         small_name(entry, "an alteration")?;
         let table = item.table()?;
-        let (world, noise) = (table.optional(keys::TRANSFER_WORLD.name()), table.optional(keys::TRANSFER_NOISE.name()));
+        let (world, noise) = (table.optional(keys::TRANSFER_WORLD), table.optional(keys::TRANSFER_NOISE));
         table.finish()?;
         let place = match (&world, &noise) {
             (Some(world), _) => world.origin(),
@@ -44,6 +48,7 @@ pub(super) fn read<'a>(
     Ok(alterations)
 }
 
+/// A table of noise, each amount of which that is left out is that of the config's own robots.
 fn laid_over(item: &Item<'_>, base: &Node) -> Result<Noise, ConfigError> {
     item.table()?;
     let noise = base.get("robot").and_then(|robot| robot.get("noise"));
@@ -52,7 +57,7 @@ fn laid_over(item: &Item<'_>, base: &Node) -> Result<Noise, ConfigError> {
     robot::noise(&Item { name: item.name.clone(), node: &merged })
 }
 
-/// Refuses a world with other rooms than `usual`: what was learned there, and the results, tell rooms by their order.
+/// Refuses a world with other rooms than `usual`, in which the arm was trained.
 fn check_rooms(world: &World, usual: &World, place: &SourceSpan) -> Result<(), ConfigError> {
     let names = |world: &World| world.rooms.iter().map(|room| room.name.clone()).collect::<Vec<_>>();
     let (found, wanted) = (names(world), names(usual));
@@ -64,7 +69,7 @@ fn check_rooms(world: &World, usual: &World, place: &SourceSpan) -> Result<(), C
     Err(place.error(message, format!("an altered world has the same rooms in the same order: {}", wanted.join(", "))))
 }
 
-/// Refuses a world in which a root's tests cannot start, or never end as achieved.
+/// Refuses a world in which a root's tests cannot start, or cannot reach their goal.
 fn check_root(cached: CachedWorld<'_>, arm: &ArmPlan, place: &SourceSpan) -> Result<(), ConfigError> {
     let Some(root) = arm.skills.last() else { return Ok(()) };
     let world = cached.world;

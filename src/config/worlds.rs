@@ -28,8 +28,7 @@ pub(super) struct Worlds<'a> {
 }
 
 /// Whether regions of a world are empty, as far as it was asked: looking takes long, and sweeps ask thousands of times.
-#[derive(Debug, Default)]
-struct RegionCache(RefCell<BTreeMap<String, Option<bool>>>);
+type RegionCache = RefCell<BTreeMap<String, Option<bool>>>;
 
 /// A floor plan against which skills are held.
 #[derive(Debug, Clone, Copy)]
@@ -42,12 +41,8 @@ pub(super) struct CachedWorld<'a> {
 impl CachedWorld<'_> {
     /// As [`World::region_is_empty`].
     pub(super) fn region_is_empty(&self, name: &str) -> Option<bool> {
-        if let Some(known) = self.regions.0.borrow().get(name) {
-            return *known;
-        }
-        let empty = self.world.region_is_empty(name);
-        self.regions.0.borrow_mut().insert(name.to_owned(), empty);
-        empty
+        let mut known = self.regions.borrow_mut();
+        *known.entry(name.to_owned()).or_insert_with(|| self.world.region_is_empty(name))
     }
 }
 
@@ -107,16 +102,22 @@ impl<'a> Worlds<'a> {
         names.find(|name| !taken(name)).unwrap_or_default()
     }
 
-    /// Gives the worlds in a table of arms or alterations the names that they have in a run folder.
-    pub(super) fn rename(&mut self, group: &mut Node) -> Result<(), ConfigError> {
-        let Value::Table(entries) = &mut group.value else { return Ok(()) };
-        for entry in entries {
-            let Some(node) = entry.node.get(keys::WORLD.name()) else { continue };
-            let index = self.place(&Item { name: keys::WORLD.name().to_owned(), node })?;
-            let file = Value::Text(self.placed[index].file.clone());
-            let renamed = Node { value: file, origin: node.origin.clone() };
-            entry.node.put(keys::WORLD.name(), renamed);
+    /// Gives worlds the names that they have in a run folder, wherever a key `world` names them; `named` tells whether
+    /// this is the value of one.
+    pub(super) fn rename(&self, node: &mut Node, named: bool) {
+        match &mut node.value {
+            Value::Table(entries) => entries.iter_mut().for_each(|entry| {
+                // An axis may have its values in a table, beside a label.
+                let named = entry.key == keys::WORLD.name() || named && entry.key == "values";
+                self.rename(&mut entry.node, named);
+            }),
+            Value::List(items) if named => items.iter_mut().for_each(|item| self.rename(item, true)),
+            Value::Text(text) if named => {
+                if let Some(index) = self.named.get(text) {
+                    text.clone_from(&self.placed[*index].file);
+                }
+            }
+            _ => {}
         }
-        Ok(())
     }
 }

@@ -119,3 +119,28 @@ impl KeyRow {
         self.path.rsplit('.').next().unwrap_or(self.path)
     }
 }
+
+/// JSON type of a key that holds text.
+pub const TEXT: &[&str] = &["string"];
+/// JSON type of a key that holds a list.
+pub const LIST: &[&str] = &["array"];
+
+/// A constant for each key, and a list of them all: name, path, default, what it may be, source, meaning.
+macro_rules! key_rows {
+    ($(#[$all_doc:meta])* $all:ident:
+        $($name:ident = $path:literal, $default:expr, $allowed:expr, $source:ident, $doc:literal;)*) => {
+        $(
+            #[doc = concat!("`", $path, "`: ", $doc)]
+            pub const $name: $crate::layout::schema::KeyRow = $crate::layout::schema::KeyRow {
+                path: $path,
+                default: $default,
+                allowed: $allowed,
+                source: $crate::layout::schema::DefaultSource::$source,
+                doc: $doc,
+            };
+        )*
+        $(#[$all_doc])*
+        pub const $all: &[$crate::layout::schema::KeyRow] = &[$($name),*];
+    };
+}
+pub(crate) use key_rows;

@@ -12,54 +12,52 @@ const WHOLE: [&str; 2] = ["starts", "applicable"];
 /// The table whose keys stand for those of the rest: there, each member of [`WHOLE`] tables is an axis of its own.
 pub(crate) const SWEEP: &str = "sweep";
 
-/// A text that values come from.
-#[derive(Debug)]
-pub(crate) enum SourceText {
-    /// A file.
-    File { path: PathBuf, text: String },
+/// Where a key or value was written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum SourceSpan {
+    /// These bytes of a file, or all of it.
+    File(Arc<SourceFile>, Option<Range<usize>>),
     /// A command line argument, whole.
     Argument(String),
     /// The default of the key with this path.
     Default(&'static str),
 }
 
-/// Where a key or value was written.
-#[derive(Debug, Clone)]
-pub(crate) struct SourceSpan {
-    pub(crate) source: Arc<SourceText>,
-    pub(crate) span: Range<usize>,
+/// A file that was read.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) struct SourceFile {
+    path: PathBuf,
+    text: String,
 }
 
 impl SourceSpan {
+    fn part(&self, span: Range<usize>) -> Self {
+        match self {
+            Self::File(file, _) => Self::File(Arc::clone(file), Some(span)),
+            other => other.clone(),
+        }
+    }
+
     /// A complaint about this place.
     pub(crate) fn error(&self, message: impl Into<String>, hint: impl Into<String>) -> ConfigError {
-        let place = match &*self.source {
-            SourceText::File { path, text } => Place::of_span(path, text, &self.span),
-            SourceText::Argument(argument) => Place::Argument(argument.clone()),
-            SourceText::Default(path) => Place::Argument(format!("the default of {path}")),
+        let place = match self {
+            Self::File(file, Some(span)) => Place::of_span(&file.path, &file.text, span),
+            Self::File(file, None) => Place::File(file.path.clone()),
+            Self::Argument(argument) => Place::Argument(argument.clone()),
+            Self::Default(path) => Place::Argument(format!("the default of {path}")),
         };
         ConfigError::new(place, message, hint)
     }
 
-    /// Whether nobody wrote this: it is a default.
+    /// Whether nobody wrote this.
     pub(crate) fn is_default(&self) -> bool {
-        matches!(&*self.source, SourceText::Default(_))
+        matches!(self, Self::Default(_))
     }
 
     fn replace_default(&mut self, other: Self) {
         if self.is_default() {
             *self = other;
         }
-    }
-
-    /// A complaint about the whole text.
-    pub(crate) fn file_error(&self, message: impl Into<String>, hint: impl Into<String>) -> ConfigError {
-        let place = match &*self.source {
-            SourceText::File { path, .. } => Place::File(path.clone()),
-            SourceText::Argument(argument) => Place::Argument(argument.clone()),
-            SourceText::Default(path) => Place::Argument(format!("the default of {path}")),
-        };
-        ConfigError::new(place, message, hint)
     }
 }
 
@@ -92,25 +90,41 @@ pub(crate) struct KeyValue {
 impl Node {
     /// Reads a whole file's text.
     pub(crate) fn parse(text: &str, path: &Path) -> Result<Self, ConfigError> {
-        let source = Arc::new(SourceText::File { path: path.to_owned(), text: text.to_owned() });
-        let whole = SourceSpan { source: Arc::clone(&source), span: 0..0 };
+        let file = SourceFile { path: path.to_owned(), text: text.to_owned() };
+        let whole = SourceSpan::File(Arc::new(file), None);
         let document = DeTable::parse(text).map_err(|error| {
-            let origin = SourceSpan { source: Arc::clone(&source), span: error.span().unwrap_or(0..0) };
             let message = format!("not valid TOML: {}", error.message());
-            origin.error(message, "text needs quotes, lists need commas; https://toml.io has the rules")
+            let hint = "text needs quotes, lists need commas; https://toml.io has the rules";
+            whole.part(error.span().unwrap_or(0..0)).error(message, hint)
         })?;
-        Ok(Self { value: table(document.get_ref(), &source)?, origin: whole })
+        Ok(Self { value: table(document.get_ref(), &whole)?, origin: whole })
     }
 
-    /// Reads one value, all of which has the given place.
-    pub(crate) fn parse_value(text: &str, source: &Arc<SourceText>) -> Option<Result<Self, ConfigError>> {
-        let value = DeValue::parse(text).ok()?;
-        Some(convert(value.get_ref(), value.span(), source))
+    /// Reads one value, if that is TOML.
+    pub(crate) fn parse_value(text: &str, origin: &SourceSpan) -> Result<Option<Self>, ConfigError> {
+        match DeValue::parse(text) {
+            Ok(value) => convert(value.get_ref(), value.span(), origin).map(Some),
+            Err(_) => Ok(None),
+        }
     }
 
     /// An empty table.
     pub(crate) fn empty(origin: SourceSpan) -> Self {
         Self { value: Value::Table(Vec::new()), origin }
+    }
+
+    /// Text.
+    pub(crate) fn text(text: &str, origin: &SourceSpan) -> Self {
+        Self { value: Value::Text(text.to_owned()), origin: origin.clone() }
+    }
+
+    /// This value in tables that have nothing else, under the path of keys.
+    pub(crate) fn under(self, path: &[&str]) -> Self {
+        path.iter().rev().fold(self, |node, key| {
+            let mut table = Self::empty(node.origin.clone());
+            table.put(key, node);
+            table
+        })
     }
 
     /// The value's type in words.
@@ -130,17 +144,19 @@ impl Node {
         self.get("values").or_else(|| self.get("from")).is_some()
     }
 
-    /// The value under a key, if this is a table that has it.
-    pub(crate) fn get(&self, key: &str) -> Option<&Node> {
-        self.entry(key).map(|entry| &entry.node)
+    /// What is in it, if this is a table.
+    pub(crate) fn entries(&self) -> &[KeyValue] {
+        if let Value::Table(entries) = &self.value { entries } else { &[] }
     }
 
-    /// The key and value, if this is a table that has it.
-    pub(crate) fn entry(&self, key: &str) -> Option<&KeyValue> {
-        match &self.value {
-            Value::Table(entries) => entries.iter().find(|entry| entry.key == key),
-            _ => None,
-        }
+    /// The value under a key, if this is a table that has it.
+    pub(crate) fn get(&self, key: &str) -> Option<&Node> {
+        self.entries().iter().find(|entry| entry.key == key).map(|entry| &entry.node)
+    }
+
+    /// The keys of the table under `group`; none if there is no such table.
+    pub(crate) fn names(&self, group: &str) -> Vec<&str> {
+        self.get(group).map_or(&[][..], Self::entries).iter().map(|entry| entry.key.as_str()).collect()
     }
 
     /// The value under a key, to be changed.
@@ -198,20 +214,16 @@ impl Node {
     }
 }
 
-fn table(entries: &DeTable<'_>, source: &Arc<SourceText>) -> Result<Value, ConfigError> {
-    let mut out = Vec::with_capacity(entries.len());
-    for (key, value) in entries {
-        out.push(KeyValue {
-            key: key.get_ref().to_string(),
-            origin: SourceSpan { source: Arc::clone(source), span: key.span() },
-            node: convert(value.get_ref(), value.span(), source)?,
-        });
-    }
-    Ok(Value::Table(out))
+fn table(entries: &DeTable<'_>, whole: &SourceSpan) -> Result<Value, ConfigError> {
+    let each = entries.iter().map(|(key, value)| {
+        let node = convert(value.get_ref(), value.span(), whole)?;
+        Ok(KeyValue { key: key.get_ref().to_string(), origin: whole.part(key.span()), node })
+    });
+    each.collect::<Result<_, _>>().map(Value::Table)
 }
 
-fn convert(value: &DeValue<'_>, span: Range<usize>, source: &Arc<SourceText>) -> Result<Node, ConfigError> {
-    let origin = SourceSpan { source: Arc::clone(source), span };
+fn convert(value: &DeValue<'_>, span: Range<usize>, whole: &SourceSpan) -> Result<Node, ConfigError> {
+    let origin = whole.part(span);
     let value = match value {
         DeValue::String(text) => Value::Text(text.to_string()),
         DeValue::Integer(number) => match i64::from_str_radix(number.as_str(), number.radix()) {
@@ -221,17 +233,17 @@ fn convert(value: &DeValue<'_>, span: Range<usize>, source: &Arc<SourceText>) ->
         DeValue::Float(number) => match number.as_str().parse::<f64>() {
             Ok(number) if number.is_finite() => Value::Float(number),
             _ => {
-                return Err(
-                    origin.error(format!("`{number}` is not a number that can be used"), "every number must be finite")
-                );
+                let message = format!("`{number}` is not a number that can be used");
+                return Err(origin.error(message, "every number must be finite"));
             }
         },
         DeValue::Boolean(flag) => Value::Flag(*flag),
         DeValue::Datetime(_) => return Err(origin.error("dates have no meaning here", "put text in quotes")),
-        DeValue::Array(items) => Value::List(
-            items.iter().map(|item| convert(item.get_ref(), item.span(), source)).collect::<Result<_, _>>()?,
-        ),
-        DeValue::Table(entries) => table(entries, source)?,
+        DeValue::Array(items) => {
+            let each = items.iter().map(|item| convert(item.get_ref(), item.span(), whole));
+            Value::List(each.collect::<Result<_, _>>()?)
+        }
+        DeValue::Table(entries) => table(entries, whole)?,
     };
     Ok(Node { value, origin })
 }

@@ -1,13 +1,14 @@
 //! What is wrong with a config or world file, where, and what to do about it.
 
-use std::fmt::Write;
+use std::fmt;
+use std::io::{self, ErrorKind};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 /// A refused config, world file or command line value.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error("{}", .0.render())]
+#[error("{0}")]
 pub struct ConfigError(Box<Complaint>);
 
 /// Where a refused value came from.
@@ -46,18 +47,14 @@ impl ConfigError {
     }
 
     /// A file that cannot be read.
-    pub fn unreadable(path: &Path, what: &str, error: &std::io::Error) -> Self {
-        let hint = match error.kind() {
-            std::io::ErrorKind::NotFound => "check the spelling, and the folder that the path starts from",
-            std::io::ErrorKind::IsADirectory => "name a file, not a folder",
-            std::io::ErrorKind::InvalidData => "the file must be plain UTF-8 text",
-            _ => "check the file's permissions",
-        };
-        let reason = match error.kind() {
-            std::io::ErrorKind::NotFound => "there is no such file".to_owned(),
-            std::io::ErrorKind::IsADirectory => "it is a folder".to_owned(),
-            std::io::ErrorKind::InvalidData => "it is not text".to_owned(),
-            _ => error.to_string(),
+    pub fn unreadable(path: &Path, what: &str, error: &io::Error) -> Self {
+        let (reason, hint) = match error.kind() {
+            ErrorKind::NotFound => {
+                ("there is no such file", "check the spelling, and the folder that the path starts from")
+            }
+            ErrorKind::IsADirectory => ("it is a folder", "name a file, not a folder"),
+            ErrorKind::InvalidData => ("it is not text", "the file must be plain UTF-8 text"),
+            _ => (&*error.to_string(), "check the file's permissions"),
         };
         Self::new(Place::File(path.to_owned()), format!("cannot read the {what}: {reason}"), hint)
     }
@@ -101,28 +98,21 @@ fn floor_boundary(text: &str, at: usize) -> usize {
     (0..=at).rev().find(|&i| text.is_char_boundary(i)).unwrap_or(0)
 }
 
-impl Complaint {
-    fn render(&self) -> String {
-        let mut out = self.message.clone();
-        // Writing to a String cannot fail.
-        let _ = match &self.place {
+impl fmt::Display for Complaint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)?;
+        match &self.place {
             Place::Line { path, line, column, width, text } => {
+                let (path, text) = (path.display(), text.replace('\t', " "));
                 let margin = " ".repeat(line.to_string().len());
-                let text = text.replace('\t', " ");
                 let under = format!("{}{}", " ".repeat(column.saturating_sub(1)), "^".repeat(*width));
-                write!(
-                    out,
-                    "\n{margin}--> {}:{line}:{column}\n{margin} |\n{line} | {text}\n{margin} | {under}",
-                    path.display()
-                )
+                write!(f, "\n{margin}--> {path}:{line}:{column}")?;
+                write!(f, "\n{margin} |\n{line} | {text}\n{margin} | {under}")
             }
-            Place::File(path) => write!(out, "\n --> {}", path.display()),
-            Place::Argument(argument) => write!(out, "\n --> {argument}"),
-        };
-        if !self.hint.is_empty() {
-            let _ = write!(out, "\nhint: {}", self.hint);
-        }
-        out
+            Place::File(path) => write!(f, "\n --> {}", path.display()),
+            Place::Argument(argument) => write!(f, "\n --> {argument}"),
+        }?;
+        if self.hint.is_empty() { Ok(()) } else { write!(f, "\nhint: {}", self.hint) }
     }
 }
 

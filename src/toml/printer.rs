@@ -12,47 +12,43 @@ pub(crate) fn document(tree: &Node) -> String {
 }
 
 fn table(node: &Node, path: &str, out: &mut String) {
-    let Value::Table(entries) = &node.value else { return };
-    if path == SWEEP {
-        return axes(node, "", out);
+    for entry in node.entries().iter().filter(|entry| !is_table(&entry.node)) {
+        line(&key(&entry.key), &entry.node, out);
     }
-    for entry in entries.iter().filter(|entry| !is_table(&entry.node)) {
-        // Writing to a String cannot fail.
-        let _ = writeln!(out, "{} = {}", key(&entry.key), value(&entry.node));
-    }
-    for entry in entries.iter().filter(|entry| is_table(&entry.node)) {
-        let path = if path.is_empty() { key(&entry.key) } else { format!("{path}.{}", key(&entry.key)) };
+    for entry in node.entries().iter().filter(|entry| is_table(&entry.node)) {
+        let (path, entries) = (below(path, &entry.key), entry.node.entries());
         // A table of tables needs no header of its own.
-        if holds_values(&entry.node) || path == SWEEP {
+        if path == SWEEP || entries.is_empty() || entries.iter().any(|entry| !is_table(&entry.node)) {
+            // Writing to a String cannot fail.
             let _ = writeln!(out, "\n[{path}]");
         }
-        table(&entry.node, &path, out);
+        if path == SWEEP { axes(&entry.node, "", out) } else { table(&entry.node, &path, out) }
     }
 }
 
 /// The axes of a sweep in their order, which numbers the points: no header may come between.
 fn axes(node: &Node, path: &str, out: &mut String) {
-    let Value::Table(entries) = &node.value else { return };
-    for entry in entries {
-        let path = if path.is_empty() { key(&entry.key) } else { format!("{path}.{}", key(&entry.key)) };
+    for entry in node.entries() {
+        let path = below(path, &entry.key);
         if is_table(&entry.node) && !entry.node.is_axis() {
             axes(&entry.node, &path, out);
         } else {
-            // Writing to a String cannot fail.
-            let _ = writeln!(out, "{path} = {}", value(&entry.node));
+            line(&path, &entry.node, out);
         }
     }
 }
 
-fn is_table(node: &Node) -> bool {
-    matches!(node.value, Value::Table(_))
+fn line(path: &str, node: &Node, out: &mut String) {
+    // Writing to a String cannot fail.
+    let _ = writeln!(out, "{path} = {}", value(node));
 }
 
-fn holds_values(node: &Node) -> bool {
-    match &node.value {
-        Value::Table(entries) => entries.is_empty() || entries.iter().any(|entry| !is_table(&entry.node)),
-        _ => true,
-    }
+fn below(path: &str, name: &str) -> String {
+    if path.is_empty() { key(name) } else { format!("{path}.{}", key(name)) }
+}
+
+fn is_table(node: &Node) -> bool {
+    matches!(node.value, Value::Table(_))
 }
 
 fn key(key: &str) -> String {

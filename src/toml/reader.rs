@@ -6,6 +6,7 @@ use crate::layout::params::ParamRow;
 use crate::layout::schema::{Allowed, Bounds, KeyRow};
 use bytemuck::Pod;
 use std::cell::RefCell;
+use std::collections::BTreeSet;
 
 /// Whether the text is a short name of letters, digits, `-` and `_`; such names need no quotes in TOML.
 pub(crate) fn is_name(text: &str) -> bool {
@@ -147,6 +148,26 @@ impl<'a> Item<'a> {
         Ok(out)
     }
 
+    /// What a list chooses, in ascending order; `read` gives the number of an item, and its name for messages.
+    pub(crate) fn chosen(
+        &self,
+        what: &str,
+        hint: &str,
+        read: impl Fn(&Item<'a>) -> Result<(usize, String), ConfigError>,
+    ) -> Result<Vec<usize>, ConfigError> {
+        let mut chosen = BTreeSet::new();
+        for item in self.items()? {
+            let (number, name) = read(&item)?;
+            if !chosen.insert(number) {
+                return Err(item.error(format!("the {what} {name} is there twice"), "name each once"));
+            }
+        }
+        if chosen.is_empty() {
+            return Err(self.error(format!("no {what} is chosen"), hint));
+        }
+        Ok(chosen.into_iter().collect())
+    }
+
     /// A list of whole numbers up to `high`, each more than the one before.
     pub(crate) fn ascending(&self, high: u32) -> Result<Vec<u32>, ConfigError> {
         let mut out = Vec::new();
@@ -161,7 +182,7 @@ impl<'a> Item<'a> {
         Ok(out)
     }
 
-    /// A list of exactly N numbers of any reasonable size; `shape` shows them, for the hint.
+    /// A list of exactly N numbers of any reasonable size, inches or degrees; `shape` shows them, for the hint.
     pub(crate) fn numbers<const N: usize>(&self, shape: &str) -> Result<[f32; N], ConfigError> {
         self.numbers_within(shape, Bounds::between(-1e6, 1e6))
     }
@@ -183,32 +204,37 @@ impl<'a> Item<'a> {
 
     /// The table; every key that is not asked for before [`TableReader::finish`] is refused there.
     pub(crate) fn table(&self) -> Result<TableReader<'a>, ConfigError> {
-        match &self.node.value {
-            Value::Table(entries) => {
-                Ok(TableReader { name: self.name.clone(), node: self.node, entries, asked: RefCell::new(Vec::new()) })
-            }
+        match self.node.value {
+            Value::Table(_) => Ok(TableReader { name: self.name.clone(), node: self.node, asked: RefCell::default() }),
             _ => Err(self.wrong("a table", "write its keys below a [header], or as { key = value }")),
         }
     }
 }
 
-/// A table that keeps track of the keys that were asked for.
+/// A table that keeps track of the keys that were asked for. Where keys have rows, defaults are in the tree already.
 #[derive(Debug)]
 pub(crate) struct TableReader<'a> {
     name: String,
     node: &'a Node,
-    entries: &'a [KeyValue],
     asked: RefCell<Vec<String>>,
+}
+
+/// A row stands for the last part of its path.
+impl AsRef<str> for KeyRow {
+    fn as_ref(&self) -> &str {
+        self.name()
+    }
 }
 
 impl<'a> TableReader<'a> {
     /// The full dotted name of a key.
-    pub(crate) fn name_of(&self, key: &str) -> String {
+    fn name_of(&self, key: &str) -> String {
         if self.name.is_empty() { key.to_owned() } else { format!("{}.{key}", self.name) }
     }
 
     /// The value under a key that may be missing.
-    pub(crate) fn optional(&self, key: &str) -> Option<Item<'a>> {
+    pub(crate) fn optional(&self, key: impl AsRef<str>) -> Option<Item<'a>> {
+        let key = key.as_ref();
         let mut asked = self.asked.borrow_mut();
         if !asked.iter().any(|known| known == key) {
             asked.push(key.to_owned());
@@ -217,66 +243,28 @@ impl<'a> TableReader<'a> {
     }
 
     /// The value under a key that must be there; `example` shows one.
-    pub(crate) fn required(&self, key: &str, example: &str) -> Result<Item<'a>, ConfigError> {
+    pub(crate) fn required(&self, key: impl AsRef<str>, example: &str) -> Result<Item<'a>, ConfigError> {
+        let key = key.as_ref();
         self.optional(key).ok_or_else(|| {
             // A misspelt key explains a missing one better.
-            let stranger = self.entries.iter().find(|e| nearest(&e.key, &[key]).is_some());
+            let stranger = self.node.entries().iter().find(|e| nearest(&e.key, &[key]).is_some());
             let hint = match stranger {
                 Some(entry) => format!("`{}` was found; did you mean `{key}`?", entry.key),
                 None => format!("add `{key} = {example}`"),
             };
-            self.missing(key, hint)
+            self.node.origin.error(format!("`{}` is missing", self.name_of(key)), hint)
         })
     }
 
-    fn missing(&self, key: &str, hint: String) -> ConfigError {
-        let message = format!("`{}` is missing", self.name_of(key));
-        // The document has no line of its own.
-        if self.name.is_empty() {
-            self.node.origin.file_error(message, hint)
-        } else {
-            self.node.origin.error(message, hint)
-        }
-    }
-
-    /// All keys with their values, all counted as asked for.
-    pub(crate) fn all(&self) -> Vec<(&'a KeyValue, Item<'a>)> {
-        let mut asked = self.asked.borrow_mut();
-        let each = self.entries.iter().map(|entry| {
-            asked.push(entry.key.clone());
-            (entry, Item { name: self.name_of(&entry.key), node: &entry.node })
-        });
-        each.collect()
-    }
-
-    /// Refuses keys that were never asked for.
-    pub(crate) fn finish(self) -> Result<(), ConfigError> {
-        let asked = self.asked.borrow();
-        let Some(entry) = self.entries.iter().find(|entry| !asked.contains(&entry.key)) else { return Ok(()) };
-        let place = if self.name.is_empty() { "here".to_owned() } else { format!("in `{}`", self.name) };
-        let asked: Vec<&str> = asked.iter().map(String::as_str).collect();
-        let hint = match nearest(&entry.key, &asked) {
-            Some(best) => format!("did you mean `{best}`?"),
-            None => format!("the keys {place} are {}", list(&asked)),
-        };
-        Err(entry.origin.error(format!("unknown key `{}`", self.name_of(&entry.key)), hint))
-    }
-}
-
-/// A table whose keys have rows, which hold their ranges. Defaults are in the tree already.
-#[derive(Debug)]
-pub(crate) struct KeyedTable<'a>(pub(crate) TableReader<'a>);
-
-impl<'a> KeyedTable<'a> {
-    /// The value of a key that must be there; `example` shows one.
-    pub(crate) fn required(&self, key: &KeyRow, example: &str) -> Result<Item<'a>, ConfigError> {
-        self.0.required(key.name(), example)
+    /// The value of a key that has a default.
+    pub(crate) fn value(&self, key: &KeyRow) -> Result<Item<'a>, ConfigError> {
+        self.required(key, key.default.unwrap_or("..."))
     }
 
     /// The value of a key as the word that stands for it in a learner's memory: a number as the bits of an f32, a whole
     /// number as it is, 0 or 1, the place of a word among those possible.
     pub(crate) fn word(&self, key: &KeyRow) -> Result<u32, ConfigError> {
-        let item = self.required(key, key.default.unwrap_or("..."))?;
+        let item = self.value(key)?;
         match key.allowed {
             Allowed::Number(bounds) => item.number(bounds).map(f32::to_bits),
             Allowed::Whole(low, high) => item.whole(low, high),
@@ -293,7 +281,7 @@ impl<'a> KeyedTable<'a> {
 
     /// A number in the key's range, or its default where it is left out of a file that no defaults lie under.
     pub(crate) fn number_or_default(&self, key: &KeyRow) -> Result<f32, ConfigError> {
-        match (self.0.optional(key.name()), key.default.and_then(|text| text.parse().ok())) {
+        match (self.optional(key), key.default.and_then(|text| text.parse().ok())) {
             (None, Some(default)) => Ok(default),
             _ => self.number(key),
         }
@@ -311,5 +299,25 @@ impl<'a> KeyedTable<'a> {
             words[row.word] = self.word(&row.key)?;
         }
         Ok(())
+    }
+
+    /// All keys with their values, all counted as asked for.
+    pub(crate) fn all(&self) -> Vec<(&'a KeyValue, Item<'a>)> {
+        let entries = self.node.entries().iter();
+        self.asked.borrow_mut().extend(entries.clone().map(|entry| entry.key.clone()));
+        entries.map(|entry| (entry, Item { name: self.name_of(&entry.key), node: &entry.node })).collect()
+    }
+
+    /// Refuses keys that were never asked for.
+    pub(crate) fn finish(self) -> Result<(), ConfigError> {
+        let asked = self.asked.borrow();
+        let asked: Vec<&str> = asked.iter().map(String::as_str).collect();
+        let Some(entry) = self.node.entries().iter().find(|entry| !asked.contains(&&*entry.key)) else { return Ok(()) };
+        let place = if self.name.is_empty() { "here".to_owned() } else { format!("in `{}`", self.name) };
+        let hint = match nearest(&entry.key, &asked) {
+            Some(best) => format!("did you mean `{best}`?"),
+            None => format!("the keys {place} are {}", list(&asked)),
+        };
+        Err(entry.origin.error(format!("unknown key `{}`", self.name_of(&entry.key)), hint))
     }
 }

@@ -12,7 +12,7 @@ use crate::world::{Pose, World};
 use bytemuck::Zeroable;
 
 /// One reading of all sensors.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct SensorValues {
     /// Inches; index 0 straight ahead, then counter-clockwise every 15 degrees.
     pub sonar: [u32; RAYS],

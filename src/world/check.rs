@@ -31,23 +31,11 @@ pub(super) fn overlap(rooms: &[Room], written: &[SourceSpan]) -> Result<(), Conf
     Ok(())
 }
 
-/// What is wrong with a door, before it is known where that was written.
-#[derive(Debug)]
-pub(super) enum DoorFault {
-    Rooms(String, String),
-    Centre(String, String),
-    Width(String, String),
-}
-
-impl DoorFault {
-    /// The complaint at the value that caused it.
-    pub(super) fn place(self, rooms: &Item<'_>, centre: &Item<'_>, width: &Item<'_>) -> ConfigError {
-        match self {
-            Self::Rooms(message, hint) => rooms.error(message, hint),
-            Self::Centre(message, hint) => centre.error(message, hint),
-            Self::Width(message, hint) => width.error(message, hint),
-        }
-    }
+/// Where the parts of a door are written.
+pub(super) struct DoorItems<'a> {
+    pub(super) rooms: Item<'a>,
+    pub(super) centre: Item<'a>,
+    pub(super) width: Item<'a>,
 }
 
 /// Finds the wall that a door goes through: the gap between its rooms, along one axis.
@@ -56,17 +44,18 @@ pub(super) fn door(
     rooms: &[Room],
     joined: [usize; 2],
     (centre, width): (Vec2, f32),
-) -> Result<Door, DoorFault> {
+    written: &DoorItems<'_>,
+) -> Result<Door, ConfigError> {
     let [first, second] = joined.map(|i| &rooms[i]);
     let pair = format!("`{}` and `{}`", first.name, second.name);
     if joined[0] == joined[1] {
         let message = format!("the door `{name}` joins `{}` to itself", first.name);
-        return Err(DoorFault::Rooms(message, "name two rooms".to_owned()));
+        return Err(written.rooms.error(message, "name two rooms"));
     }
     if width <= 2.0 * ROBOT_RADIUS {
         let message = format!("the door `{name}` is {width} inches wide, too narrow for the robot");
         let hint = format!("the robot is {} inches across; 36 to 50 inches work well", 2.0 * ROBOT_RADIUS);
-        return Err(DoorFault::Width(message, hint));
+        return Err(written.width.error(message, hint));
     }
     let (low, high) = (first.area, second.area);
     // Signed gaps from the first room to the second: right, left, up, down. Exactly one direction leads through a wall.
@@ -85,16 +74,14 @@ pub(super) fn door(
     });
     let Some(&(normal, from, to)) = faces else {
         let message = format!("the rooms {pair} of the door `{name}` do not face each other");
-        return Err(DoorFault::Rooms(
-            message,
-            "a door needs two rooms side by side, a wall's thickness apart".to_owned(),
-        ));
+        return Err(written.rooms.error(message, "a door needs two rooms side by side, a wall's thickness apart"));
     };
     let at = along(centre, normal);
     if at < from || at > to {
         let axis = if normal.x == 0.0 { "y" } else { "x" };
         let message = format!("the door `{name}` is not between its rooms {pair}");
-        return Err(DoorFault::Centre(message, format!("its centre's {axis} must lie between {from} and {to}")));
+        let hint = format!("its centre's {axis} must lie between {from} and {to}");
+        return Err(written.centre.error(message, hint));
     }
     let start = across(low.min, normal).max(across(high.min, normal));
     let end = across(low.max, normal).min(across(high.max, normal));
@@ -105,7 +92,7 @@ pub(super) fn door(
         let hint = format!(
             "they share the {axis} from {start} to {end}, and the door needs {half} on each side of its centre"
         );
-        return Err(DoorFault::Centre(message, hint));
+        return Err(written.centre.error(message, hint));
     }
     // The plan's centre lies halfway through the wall whatever the file says.
     let middle = (from + to) / 2.0;
@@ -117,7 +104,7 @@ pub(super) fn door(
 pub(super) fn check(world: &World, written: &Written, whole: &SourceSpan) -> Result<(), ConfigError> {
     if world.rooms.is_empty() {
         let hint = "add [[rooms]] with name = \"A\" and box = [0, 0, 360, 420]";
-        return Err(whole.file_error("the world has no rooms", hint));
+        return Err(whole.error("the world has no rooms", hint));
     }
     doors(world, written)?;
     light(world, written)?;
@@ -130,7 +117,7 @@ pub(super) fn check(world: &World, written: &Written, whole: &SourceSpan) -> Res
     }
     if world.region_is_empty(super::regions::ANYWHERE) != Some(false) {
         let hint = "no room has a spot that is 14 inches from everything solid; make rooms larger or remove boxes";
-        return Err(whole.file_error("the world has no free space", hint));
+        return Err(whole.error("the world has no free space", hint));
     }
     Ok(())
 }

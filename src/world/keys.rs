@@ -1,30 +1,17 @@
 //! Every key of a world file. All lengths are inches, all angles degrees.
 
 use crate::layout::schema::Allowed::{Number, Other};
-use crate::layout::schema::{Bounds, DefaultSource, KeyRow};
-
-macro_rules! keys {
-    ($($name:ident = $path:literal, $default:expr, $allowed:expr, $source:ident, $doc:literal;)*) => {
-        $(
-            #[doc = concat!("`", $path, "`: ", $doc)]
-            pub(super) const $name: KeyRow = KeyRow {
-                path: $path, default: $default, allowed: $allowed, source: DefaultSource::$source, doc: $doc,
-            };
-        )*
-        /// All keys, in the order in which files show them; `[]` stands behind a table that may be there several times.
-        pub const ALL: &[KeyRow] = &[$($name),*];
-    };
-}
+use crate::layout::schema::{Bounds, LIST, TEXT, key_rows};
 
 /// Least and largest side of a floor. Ours: cells are packed in 16 bits, and culled lists must stay small.
 pub(super) const SIDES: Bounds = Bounds::between(48.0, 2000.0);
 
-const TEXT: &[&str] = &["string"];
-const LIST: &[&str] = &["array"];
 /// Light range and radius of the light area.
 const REACH: Bounds = Bounds::above(0.0, 10_000.0);
 
-keys! {
+key_rows! {
+    /// All keys, in the order in which files show them; `[]` stands behind a table that may be there several times.
+    ALL:
     NAME = "name", None, Other(TEXT, "letters, digits, - and _"), Ours, "What reports call the world; the file's stem if left out.";
     SIZE = "size", None, Other(LIST, "[width, height], each between 48 and 2000"), Paper, "Size of the floor; x right, y up. The outer walls are implied. Required.";
     WALLS = "walls", None, Other(LIST, "a list of [x1, y1, x2, y2]"), Paper, "Inner walls: segments in any direction.";

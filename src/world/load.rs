@@ -1,12 +1,12 @@
 //! A world file's text -> a checked [`World`]. All lengths are inches, all angles degrees.
 
-use super::check::{self, Written};
+use super::check::{self, DoorItems, Written};
 use super::keys;
 use super::solids::{self, holds};
 use super::{Charger, Door, Light, Pose, Rect, Room, World};
 use crate::layout::{MAX_DOORS, MAX_ROOMS, MAX_SEGMENTS};
 use crate::toml::document::Node;
-use crate::toml::reader::{Item, KeyedTable, TableReader};
+use crate::toml::reader::{Item, TableReader};
 use crate::toml::{ConfigError, Files, OsFiles};
 use glam::Vec2;
 use std::path::Path;
@@ -44,7 +44,7 @@ pub fn parse(text: &str, source: &Path) -> Result<World, ConfigError> {
     if segments.len() > MAX_SEGMENTS {
         let message = format!("the world has {} segments, more than {MAX_SEGMENTS}", segments.len());
         let hint = "a box counts 4, less its sides against the outer walls; use fewer or larger boxes";
-        return Err(document.origin.file_error(message, hint));
+        return Err(document.origin.error(message, hint));
     }
     let world = World { name, size, segments, boxes, rooms, doors, charger, light, places, regions };
     check::check(&world, &written, &document.origin)?;
@@ -151,35 +151,34 @@ fn doors(root: &TableReader<'_>, rooms: &[Room], written: &mut Written) -> Resul
         let centre = table.required("centre", "[64, 204]")?;
         let at = Vec2::from_array(centre.numbers::<2>("[x, y] in inches")?);
         let width = table.required("width", "50")?;
-        let table = KeyedTable(table);
-        let door = check::door(name, rooms, joined, (at, table.number(&keys::DOOR_WIDTH)?));
-        let door = door.map_err(|fault| fault.place(&pair, &centre, &width))?;
-        written.doors.push(centre.origin().clone());
-        doors.push(door);
-        table.0.finish()?;
+        let origin = centre.origin().clone();
+        let items = DoorItems { rooms: pair, centre, width };
+        doors.push(check::door(name, rooms, joined, (at, table.number(&keys::DOOR_WIDTH)?), &items)?);
+        written.doors.push(origin);
+        table.finish()?;
     }
     Ok(doors)
 }
 
 fn charger(root: &TableReader<'_>, floor: &Rect) -> Result<Option<Charger>, ConfigError> {
     let Some(item) = root.optional("charger") else { return Ok(None) };
-    let table = KeyedTable(item.table()?);
-    let area = rect(&table.0.required("box", "[0, 0, 24, 24]")?, floor)?;
+    let table = item.table()?;
+    let area = rect(&table.required("box", "[0, 0, 24, 24]")?, floor)?;
     let tolerance = table.number_or_default(&keys::CHARGER_TOLERANCE)?;
-    table.0.finish()?;
+    table.finish()?;
     Ok(Some(Charger { area, tolerance }))
 }
 
 fn light(root: &TableReader<'_>, floor: &Rect, written: &mut Written) -> Result<Option<Light>, ConfigError> {
     let Some(item) = root.optional("light") else { return Ok(None) };
-    let table = KeyedTable(item.table()?);
-    let place = table.0.required("at", "[12, 12]")?;
+    let table = item.table()?;
+    let place = table.required("at", "[12, 12]")?;
     let at = point(&place, floor)?;
     written.light = Some(place.origin().clone());
-    table.required(&keys::LIGHT_RANGE, "140")?;
+    table.required(keys::LIGHT_RANGE, "140")?;
     let range = table.number(&keys::LIGHT_RANGE)?;
     let area = table.number_or_default(&keys::LIGHT_AREA)?;
-    table.0.finish()?;
+    table.finish()?;
     Ok(Some(Light { at, range, area }))
 }
 
@@ -191,10 +190,7 @@ fn places(root: &TableReader<'_>, floor: &Rect, written: &mut Written) -> Result
         if !holds(floor, Vec2::new(x, y)) {
             return Err(outside(&item, floor));
         }
-        let turned = heading.rem_euclid(360.0);
-        // A tiny negative heading rounds up to a full turn.
-        let heading = if turned < 360.0 { turned } else { 0.0 };
-        places.push((entry.key.clone(), Pose { x, y, heading }));
+        places.push((entry.key.clone(), Pose::new(x, y, heading)));
         written.places.push(item.origin().clone());
     }
     Ok(places)

@@ -30,6 +30,15 @@ pub struct Pose {
     pub heading: f32,
 }
 
+impl Pose {
+    /// With a heading of any number of turns.
+    pub fn new(x: f32, y: f32, heading: f32) -> Self {
+        let turned = heading.rem_euclid(360.0);
+        // A tiny negative heading rounds up to a full turn.
+        Self { x, y, heading: if turned < 360.0 { turned } else { 0.0 } }
+    }
+}
+
 /// An axis-parallel rectangle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rect {

@@ -4,12 +4,14 @@
 mod examine;
 mod listing;
 
-use super::console::print;
+use super::console::{count, print};
 use super::error::{CliError, exit_codes};
-use super::parity;
-use listing::{AdapterReport, DeviceList};
-use std::fmt::Write;
-use std::path::PathBuf;
+use crate::backend::cpu::cpu_backend;
+use crate::backend::open::open_adapters;
+use crate::config::{Overrides, load};
+use crate::train::parity::Work;
+use listing::text;
+use std::path::{Path, PathBuf};
 
 /// Lists the graphics adapters of this machine and examines each: does it give the same bytes as the CPU?
 #[derive(Debug, clap::Args)]
@@ -39,68 +41,39 @@ pub(super) struct DevicesArguments {
 /// Where an adapter is to leave the CPU's bytes and does not. A machine without adapters is not in error.
 pub(super) fn devices(arguments: &DevicesArguments) -> Result<(), CliError> {
     if let Some(config) = &arguments.parity {
-        return parity::check(config, arguments.learners as usize);
+        return check_parity(config, arguments.learners as usize);
     }
     #[cfg(feature = "gpu")]
     let listing = examine::devices();
     #[cfg(not(feature = "gpu"))]
-    let listing = DeviceList { adapters: Vec::new(), none: Some(crate::backend::BackendError::NotBuilt.to_string()) };
+    let listing =
+        listing::DeviceList { adapters: Vec::new(), none: Some(crate::backend::BackendError::NotBuilt.to_string()) };
     if arguments.json {
-        let text = serde_json::to_string_pretty(&listing).unwrap_or_default();
-        print(&(text + "\n"))
+        print(&(serde_json::to_string_pretty(&listing).unwrap_or_default() + "\n"))
     } else {
         print(&text(&listing))
     }
 }
 
-fn text(listing: &DeviceList) -> String {
-    let mut text = String::from("cpu\n  always there; the bytes that every exact adapter gives too\n");
-    for entry in &listing.adapters {
-        let _ = write!(text, "\n{}\n", entry.name);
-        for (key, value) in lines(entry) {
-            let _ = writeln!(text, "  {key:<9} {value}");
-        }
+/// Does the same work on the CPU and on every adapter, and prints how the bytes compare.
+///
+/// # Errors
+/// Where they differ, an adapter fails, or there is none: then nothing was compared.
+fn check_parity(config: &Path, learners: usize) -> Result<(), CliError> {
+    let plan = load(config, &Overrides::default())?;
+    let adapters = open_adapters()?;
+    let work = Work::new(&plan, learners)?;
+    let expected = work.run(&mut cpu_backend(0, None)?)?;
+    let equal = format!("equal, {}, {} bytes", count(learners, "learner"), expected.bytes());
+    let (mut differing, all) = (0, adapters.len());
+    for adapter in adapters {
+        let line = match adapter.backend.and_then(|mut gpu| work.run(gpu.as_mut())) {
+            Ok(sample) => expected.difference(&sample).map_or(Ok(&equal), |difference| Err(difference.to_string())),
+            Err(error) => Err(error.to_string().replace('\n', "\n    ")),
+        };
+        differing += usize::from(line.is_err());
+        let line = line.as_ref().map_or_else(String::as_str, |equal| equal.as_str());
+        print(&format!("{}\n  parity: {line}\n", adapter.name))?;
     }
-    if let Some(none) = &listing.none {
-        let _ = write!(text, "\nno GPU\n  {}\n", none.replace('\n', "\n  "));
-    }
-    text
-}
-
-fn lines(entry: &AdapterReport) -> Vec<(&'static str, String)> {
-    let mib = |bytes: u64| bytes >> 20;
-    let exact = match (&entry.reason, entry.exact) {
-        (_, true) => {
-            format!("yes: {}, the bits of the CPU", entry.compared)
-        }
-        (Some(reason), _) => format!("no: {reason}"),
-        (None, _) => "no".to_owned(),
-    };
-    let used = match (entry.exact, entry.software) {
-        (true, false) => "--backend auto and --backend gpu",
-        (_, true) => {
-            "--backend gpu where there is no card, or --adapter NAME; never by auto, for it is slower than cpu"
-        }
-        (false, false) => "--backend gpu only: its results are close to the CPU's, but not the same",
-    };
-    let loops = match entry.loop_budget {
-        Some(budget) => format!("ended by the driver after {budget} turns; dispatches stay below that"),
-        None => "no limit seen".to_owned(),
-    };
-    vec![
-        ("type", entry.kind.clone()),
-        ("driver", format!("{}, {}", entry.backend, entry.driver)),
-        ("exact", exact),
-        ("used by", used.to_owned()),
-        (
-            "limits",
-            format!(
-                "buffers of {} MiB, {} MiB of it at a time; {} storage buffers",
-                mib(entry.max_buffer_bytes),
-                mib(entry.max_binding_bytes),
-                entry.max_storage_buffers
-            ),
-        ),
-        ("loops", loops),
-    ]
+    if differing == 0 { Ok(()) } else { Err(CliError::Parity { differing, adapters: all }) }
 }

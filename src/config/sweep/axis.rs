@@ -1,6 +1,6 @@
 //! One axis: a key, and the values that it takes.
 
-use super::allowed_keys::AxisNames;
+use super::allowed_keys::{allowed, is_inner};
 use crate::config::keys::Allowed;
 use crate::config::plan::Scale;
 use crate::toml::document::{KeyValue, Node, SourceSpan, Value};
@@ -9,19 +9,17 @@ use crate::toml::reader::Item;
 
 /// Most points of a sweep, and most values of an axis.
 pub(super) const MAX_POINTS: usize = 1 << 16;
-/// Key of an axis that lists its values beside a label.
-pub(super) const VALUES: &str = "values";
 const SHAPE: &str = "write [a, b, c], or { from = a, to = b, steps = n }, with scale = \"log\" if wanted";
 /// Digits that computed values are rounded to: 0.1 + 2 * 0.1 is written as 0.3, and f32 holds no more than 8.
 const DIGITS: usize = 9;
 
 /// A key of the config that differs between points.
 #[derive(Debug)]
-pub(in crate::config) struct AxisSource<'a> {
+pub(super) struct AxisSource<'a> {
     /// Dotted path.
-    pub(in crate::config) key: String,
+    pub(super) key: String,
     /// Its parts.
-    pub(in crate::config) path: Vec<String>,
+    pub(super) path: Vec<String>,
     pub(super) label: String,
     pub(super) scale: Scale,
     /// The distinct values; none yet where they are still to be drawn.
@@ -29,7 +27,7 @@ pub(in crate::config) struct AxisSource<'a> {
     /// The range from which they are to be drawn.
     pub(super) range: Option<Range>,
     /// Where it is written.
-    pub(in crate::config) item: Item<'a>,
+    pub(super) item: Item<'a>,
 }
 
 /// From where to where an axis reaches.
@@ -46,18 +44,18 @@ pub(super) fn collect<'a>(
     entry: &'a KeyValue,
     item: &Item<'a>,
     above: &[&str],
-    names: &AxisNames<'_>,
+    skills: &[&str],
     axes: &mut Vec<AxisSource<'a>>,
 ) -> Result<(), ConfigError> {
     let mut path = above.to_vec();
     path.push(&entry.key);
-    if matches!(item.node.value, Value::Table(_)) && names.inner(&path) && !item.node.is_axis() {
+    if matches!(item.node.value, Value::Table(_)) && is_inner(&path) && !item.node.is_axis() {
         for (entry, item) in item.table()?.all() {
-            collect(entry, &item, &path, names, axes)?;
+            collect(entry, &item, &path, skills, axes)?;
         }
         return Ok(());
     }
-    let allowed = names.allowed(&path, &entry.origin)?;
+    let allowed = allowed(&path, skills, &entry.origin)?;
     axes.push(read(path.iter().map(|part| (*part).to_owned()).collect(), item, allowed)?);
     Ok(())
 }
@@ -85,23 +83,13 @@ fn read<'a>(path: Vec<String>, item: &Item<'a>, allowed: Allowed) -> Result<Axis
 }
 
 impl AxisSource<'_> {
-    /// Number of its values.
-    pub(in crate::config) fn size(&self) -> usize {
-        self.values.len()
-    }
-
-    /// Whether its values are world files.
-    pub(in crate::config) fn is_world(&self) -> bool {
-        self.key == "world"
-    }
-
     /// Reads `{ values = [...] }` or `{ from, to, steps, scale }`, either with a label.
     fn spread(&mut self, item: &Item<'_>, allowed: Allowed) -> Result<(), ConfigError> {
         let table = item.table()?;
         if let Some(label) = table.optional("label") {
             self.label = label.text()?.to_owned();
         }
-        if let Some(values) = table.optional(VALUES) {
+        if let Some(values) = table.optional("values") {
             self.values = listed(&values)?;
             return table.finish();
         }
@@ -113,11 +101,11 @@ impl AxisSource<'_> {
                 return Err(item.error(message, "list the values: [a, b, c]"));
             }
         };
-        let end = |name: &str| -> Result<f64, ConfigError> {
+        let end = |name: &str| {
             let end = table.required(name, "0.1")?;
-            match (&end.node.value, allowed) {
-                (_, Allowed::Whole(low, high)) => end.whole(low, high).map(f64::from),
-                (_, Allowed::Number(bounds)) => end.double(bounds),
+            match allowed {
+                Allowed::Whole(low, high) => end.whole(low, high).map(f64::from),
+                Allowed::Number(bounds) => end.double(bounds),
                 _ => Ok(0.0),
             }
         };
@@ -126,11 +114,8 @@ impl AxisSource<'_> {
             let message = format!("`{}` reaches from {from} to {to}", item.name);
             return Err(item.error(message, "`from` must be less than `to`"));
         }
-        let scale = table.optional("scale");
-        let log = match &scale {
-            Some(scale) => scale.choice("scales", &["linear", "log"])? == 1,
-            None => false,
-        };
+        let scale = table.optional("scale").map(|scale| scale.choice("scales", &["linear", "log"])).transpose()?;
+        let log = scale == Some(1);
         if log && from <= 0.0 {
             let hint = "a logarithmic axis begins above 0; raise `from`, or drop `scale`";
             return Err(item.error(format!("`{}` begins at {from}", item.name), hint));

@@ -1,11 +1,9 @@
 //! The arms of a config at the points of its sweep.
 
-use super::{AxisSource, SweepSource, has, lay};
+use super::{AxisSource, SweepSource};
 use crate::config::arm::ArmReader;
 use crate::config::plan::{ArmPlan, Child};
-use crate::config::unused_keys::UnusedKeys;
-use crate::config::worlds::Worlds;
-use crate::toml::document::Node;
+use crate::toml::document::{Node, Value};
 use crate::toml::error::{ConfigError, suggest};
 use std::collections::HashSet;
 
@@ -20,11 +18,9 @@ pub(in crate::config) struct Base<'a> {
 /// Reads each arm at its points. An arm that an axis does not concern is the same at many points, and is run at the
 /// first of them alone.
 pub(in crate::config) fn at_points(
-    reader: &ArmReader<'_>,
+    reader: &mut ArmReader<'_>,
     mut bases: Vec<Base<'_>>,
     sweep: &SweepSource<'_>,
-    worlds: &mut Worlds<'_>,
-    unused: &mut UnusedKeys,
 ) -> Result<Vec<ArmPlan>, ConfigError> {
     for axis in &sweep.axes {
         if !bases.iter().any(|base| is_concerned(base.arm, &base.tree, axis, sweep)) {
@@ -41,7 +37,7 @@ pub(in crate::config) fn at_points(
                 own.len() == sweep.axes.len() || seen.insert(own.iter().map(|axis| point[*axis]).collect::<Vec<_>>());
             if new && sweep.only.binary_search(&number).is_ok() {
                 lay(tree, sweep, point);
-                arms.push(reader.read((&arm.name, number as u32), tree, worlds, unused)?);
+                arms.push(reader.read((&arm.name, number as u32), tree)?);
             }
         }
     }
@@ -51,8 +47,8 @@ pub(in crate::config) fn at_points(
         return Err(sweep.item.error(message, hint));
     }
     bases.sort_by_key(|base| !base.run);
-    for (number, axis) in sweep.axes.iter().enumerate().filter(|(_, axis)| axis.size() > 1) {
-        if !changes(reader, &mut bases, sweep, number, worlds, unused)? {
+    for (number, axis) in sweep.axes.iter().enumerate().filter(|(_, axis)| axis.values.len() > 1) {
+        if !changes(reader, &mut bases, sweep, number)? {
             let message = format!("`{}` changes nothing in any arm", axis.key);
             let hint = "nothing uses it, as momentum where the optimiser is adam; or all skills have their own: name the \
                         skill, as in skill.dock.learning.learning_rate";
@@ -64,20 +60,18 @@ pub(in crate::config) fn at_points(
 
 /// Whether at some point another value on one axis makes another arm.
 fn changes(
-    reader: &ArmReader<'_>,
+    reader: &mut ArmReader<'_>,
     bases: &mut [Base<'_>],
     sweep: &SweepSource<'_>,
     axis: usize,
-    worlds: &mut Worlds<'_>,
-    unused: &mut UnusedKeys,
 ) -> Result<bool, ConfigError> {
     for point in &sweep.points {
         let mut other = point.clone();
-        other[axis] = (point[axis] + 1) % sweep.axes[axis].size();
+        other[axis] = (point[axis] + 1) % sweep.axes[axis].values.len();
         for Base { tree, run, .. } in &mut *bases {
             let mut at = |point: &[usize]| {
                 lay(tree, sweep, point);
-                reader.read(("", 0), tree, worlds, unused)
+                reader.read(("", 0), tree)
             };
             match (at(point), at(&other)) {
                 (Ok(one), Ok(another)) if one != another => return Ok(true),
@@ -111,5 +105,39 @@ fn hint(axis: &AxisSource<'_>, bases: &[Base<'_>]) -> String {
         }
         (Some(_), _) => format!("`{skill}` chooses among actions, which have no threshold"),
         (None, _) => format!("`{skill}` is not in the tree of any root; choose other arms, or drop the axis"),
+    }
+}
+
+/// Lays a point over a tree: every other key stays, also beside a member of an inline table.
+fn lay(tree: &mut Node, sweep: &SweepSource<'_>, point: &[usize]) {
+    for (axis, value) in sweep.axes.iter().zip(point) {
+        if has(tree, &axis.path) {
+            put(tree, &axis.path, &axis.values[*value]);
+        }
+    }
+}
+
+/// Whether the key makes sense in this arm: only a child has a threshold.
+fn has(tree: &Node, path: &[String]) -> bool {
+    let [_, skill, table, child] = path else { return true };
+    let children = tree.get("skill").and_then(|skills| skills.get(skill)).and_then(|skill| skill.get("children"));
+    match children.map(|children| &children.value) {
+        Some(Value::List(children)) if table == "applicable" => {
+            children.iter().any(|node| matches!(&node.value, Value::Text(name) if name == child))
+        }
+        _ => true,
+    }
+}
+
+fn put(tree: &mut Node, path: &[String], value: &Node) {
+    let [first, rest @ ..] = path else { return tree.clone_from(value) };
+    if !matches!(tree.value, Value::Table(_)) {
+        *tree = Node::empty(value.origin.clone());
+    }
+    if tree.get(first).is_none() {
+        tree.put(first, Node::empty(value.origin.clone()));
+    }
+    if let Some(node) = tree.get_mut(first) {
+        put(node, rest, value);
     }
 }

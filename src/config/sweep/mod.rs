@@ -10,25 +10,22 @@
 //! skill.recharge.applicable.dock = { values = [0.1, 0.2], label = "dock threshold" }
 //! ```
 //!
-//! `axis` reads one of them, `allowed_keys` tells which keys may be one, `points` combines them, and `apply` puts a point's
-//! values into an arm's config.
+//! `axis` reads one of them, `allowed_keys` tells which keys may be one, `points` combines them, and `expand` puts their
+//! values into the arms' configs.
 
 mod allowed_keys;
-mod apply;
 mod axis;
 pub(super) mod expand;
 mod points;
 
-pub(super) use apply::{has, lay};
-pub(super) use axis::AxisSource;
+use axis::AxisSource;
 
 use super::keys;
 use super::plan;
 use super::worlds::Worlds;
 use crate::toml::document::{Node, Value};
 use crate::toml::error::ConfigError;
-use crate::toml::reader::{Item, KeyedTable};
-use allowed_keys::AxisNames;
+use crate::toml::reader::Item;
 
 /// A sweep as read.
 #[derive(Debug)]
@@ -36,7 +33,7 @@ pub(super) struct SweepSource<'a> {
     /// How the points lie.
     design: plan::Design,
     /// What differs.
-    pub(super) axes: Vec<AxisSource<'a>>,
+    axes: Vec<AxisSource<'a>>,
     /// For each point, an index into the values of each axis.
     pub(super) points: Vec<Vec<usize>>,
     /// The points that are run, ascending.
@@ -53,19 +50,17 @@ pub(super) fn read<'a>(
 ) -> Result<Option<SweepSource<'a>>, ConfigError> {
     let Some(node) = node else { return Ok(None) };
     let item = Item { name: "sweep".to_owned(), node };
-    let section = KeyedTable(item.table()?);
-    let design = match section.0.optional(keys::SWEEP_DESIGN.name()) {
-        None => plan::Design::Grid,
-        Some(item) if item.choice("designs", &["grid", "random"])? == 0 => plan::Design::Grid,
-        Some(_) => plan::Design::Random,
+    let table = item.table()?;
+    let design = match table.optional(keys::SWEEP_DESIGN) {
+        Some(item) if item.choice("designs", &["grid", "random"])? == 1 => plan::Design::Random,
+        _ => plan::Design::Grid,
     };
-    let count = section.0.optional(keys::SWEEP_POINTS.name());
-    let only = section.0.optional(keys::SWEEP_ONLY.name());
-    let names = AxisNames::new(base);
+    let (count, only) = (table.optional(keys::SWEEP_POINTS), table.optional(keys::SWEEP_ONLY));
+    let skills = base.names("skill");
     let mut axes: Vec<AxisSource<'a>> = Vec::new();
-    for (entry, item) in section.0.all() {
+    for (entry, item) in table.all() {
         if !keys::all().any(|key| key.path == format!("sweep.{}", entry.key)) {
-            axis::collect(entry, &item, &[], &names, &mut axes)?;
+            axis::collect(entry, &item, &[], &skills, &mut axes)?;
         }
     }
     if let [first, ..] = &axes[..] {
@@ -91,11 +86,6 @@ pub(super) fn read<'a>(
 }
 
 impl SweepSource<'_> {
-    /// Values of a point, axis by axis.
-    pub(super) fn values(&self, point: &[usize]) -> Vec<&Node> {
-        self.axes.iter().zip(point).map(|(axis, value)| &axis.values[*value]).collect()
-    }
-
     /// What the plan and the run folder say of it. Worlds have the names that they have in the folder.
     pub(super) fn plan(&self, worlds: &mut Worlds<'_>) -> Result<plan::Sweep, ConfigError> {
         let mut axes = Vec::new();
@@ -103,16 +93,14 @@ impl SweepSource<'_> {
             let mut values = Vec::new();
             for node in &axis.values {
                 values.push(match &node.value {
-                    Value::Text(_) if axis.is_world() => {
+                    Value::Text(_) if axis.key == keys::WORLD.name() => {
                         let world = worlds.place(&Item { name: axis.key.clone(), node })?;
                         plan::AxisValue::Text(worlds.placed[world].file.clone())
                     }
-                    Value::Float(number) => plan::AxisValue::Number(*number),
-                    Value::Integer(number) => plan::AxisValue::Number(*number as f64),
-                    Value::Flag(flag) => plan::AxisValue::Text(flag.to_string()),
                     Value::Text(text) => plan::AxisValue::Text(text.clone()),
+                    Value::Flag(flag) => plan::AxisValue::Text(flag.to_string()),
                     // An axis takes neither lists nor tables.
-                    Value::List(_) | Value::Table(_) => continue,
+                    _ => plan::AxisValue::Number(axis::number(node).unwrap_or_default()),
                 });
             }
             let (key, label, scale) = (axis.key.clone(), axis.label.clone(), axis.scale);
@@ -122,21 +110,4 @@ impl SweepSource<'_> {
         let points = self.points.iter().map(|point| axes.iter().zip(point).map(value).collect()).collect();
         Ok(plan::Sweep { design: self.design, axes, points })
     }
-}
-
-/// Gives the worlds on an axis the names that they have in a run folder.
-pub(super) fn rename(sweep: &mut Node, worlds: &mut Worlds<'_>) -> Result<(), ConfigError> {
-    let Value::Table(entries) = &mut sweep.value else { return Ok(()) };
-    for entry in entries.iter_mut().filter(|entry| entry.key == keys::WORLD.name()) {
-        let list = match entry.node.get(axis::VALUES) {
-            Some(_) => entry.node.get_mut(axis::VALUES),
-            None => Some(&mut entry.node),
-        };
-        let Some(Value::List(items)) = list.map(|list| &mut list.value) else { continue };
-        for node in items {
-            let index = worlds.place(&Item { name: keys::WORLD.name().to_owned(), node })?;
-            node.value = Value::Text(worlds.placed[index].file.clone());
-        }
-    }
-    Ok(())
 }

@@ -112,22 +112,15 @@ impl AxisSource<'_> {
 
 /// The points to which a run is restricted.
 pub(super) fn chosen(only: &Item<'_>, count: usize) -> Result<Vec<usize>, ConfigError> {
-    let mut chosen = BTreeSet::new();
-    for item in only.items()? {
+    only.chosen("point", "name some, or leave `only` out", |item| {
         let point = item.whole(0, u32::MAX)? as usize;
-        if point >= count {
-            let hint = match count {
-                1 => "there is only point 0: the config has no sweep".to_owned(),
-                _ => format!("points are numbered from 0 to {}", count - 1),
-            };
-            return Err(item.error(format!("there is no point {point}"), hint));
+        if point < count {
+            return Ok((point, point.to_string()));
         }
-        if !chosen.insert(point) {
-            return Err(item.error(format!("the point {point} is there twice"), "name each once"));
-        }
-    }
-    if chosen.is_empty() {
-        return Err(only.error("no point is chosen", "name some, or leave `only` out"));
-    }
-    Ok(chosen.into_iter().collect())
+        let hint = match count {
+            1 => "there is only point 0: the config has no sweep".to_owned(),
+            _ => format!("points are numbered from 0 to {}", count - 1),
+        };
+        Err(item.error(format!("there is no point {point}"), hint))
+    })
 }
