@@ -135,7 +135,7 @@ impl Series {
 
     /// The test nearest to a number of trials, if it is within a quarter of it.
     pub fn near(&self, trials: u32) -> Option<&SeedScores> {
-        Some(self.nearest(trials)).filter(|test| 4 * test.trials.abs_diff(trials) <= trials)
+        Some(self.nearest(trials)).filter(|test| test.trials.abs_diff(trials) <= trials / 4)
     }
 
     /// Per seed, the training trials at the first test with at least this success; none if no test reached it. A seed

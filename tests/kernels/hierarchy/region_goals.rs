@@ -74,7 +74,7 @@ fn children_end_where_their_regions_say() {
             for (step, pair) in trial.records[..=trial.header.steps as usize].windows(2).enumerate() {
                 let paid = pair[0].reward as u32;
                 assert_eq!(paid & !15, 32, "every step is paid");
-                let (in_a, left_a, entered_b) = (paid & 1 == 1, paid & 4 == 4, paid & 8 == 8);
+                let [in_a, left_a, entered_b] = [1, 4, 8].map(|bit| paid & bit == bit);
                 assert!(!(in_a && left_a) && !(in_a && entered_b));
                 let last = step + 1 == trial.header.steps as usize;
                 assert_eq!(entered_b, last && trial.header.end == TERMINATED);
