@@ -99,7 +99,7 @@ fn a_hierarchy_has_every_part() {
         "The paper's claims",
         "not tested here",
         "There is no arm <code>td0</code>.",
-        "noise = { sonar = 0.2 }",
+        "<dt>noise-double</dt><dd>noise = { sonar = 0.2 }</dd>",
         "arms that are punished are left out",
         "hierarchical minus fixed-arbitration</td><td>60, 0</td>",
         "hierarchical +2: also no-persistence, fixed-arbitration",
