@@ -6,8 +6,9 @@ use skilltree::backend::cpu::cpu_backend;
 use skilltree::backend::{Backend, BackendError};
 use skilltree::config::plan::Plan;
 use skilltree::config::{Overrides, load};
-use skilltree::run_folder::sweep::{self, AxisValue, read_sweep};
+use skilltree::run_folder::sweep::AxisValue;
 use skilltree::run_folder::tables::{EVALUATIONS, TRIALS, read_evaluations, read_trials};
+use skilltree::run_folder::{JsonFile, Sweep};
 use skilltree::train::batch_group::groups;
 use skilltree::train::pretraining::shared_skills;
 use std::collections::{BTreeMap, BTreeSet};
@@ -121,7 +122,7 @@ fn check_alone(run: fn(&Path, &[&str]) -> Command, learners: usize, alone: &[(&s
         assert_eq!(found[&who], expected[&who], "{who:?}");
         assert!(nets(&out, &who) == nets(&all, &who), "{who:?}");
         assert_eq!(file_count(&out), 1);
-        assert_eq!(fs::read(out.join(sweep::FILE)).ok(), fs::read(all.join(sweep::FILE)).ok());
+        assert_eq!(fs::read(out.join(Sweep::NAME)).ok(), fs::read(all.join(Sweep::NAME)).ok());
     }
     // No two learners are the same after all.
     let distinct: BTreeSet<Vec<u8>> = expected.keys().map(|who| nets(&all, who)).collect();
@@ -133,8 +134,8 @@ fn check_alone(run: fn(&Path, &[&str]) -> Command, learners: usize, alone: &[(&s
 fn a_learner_alone_is_the_learner_in_the_sweep() {
     let dir = check_alone(docking, 2 * 4 * 2, &[("taught-adam", 2, 3), ("untaught-sgd", 1, 4)]);
     let all = dir.path().join("all");
-    let text = fs::read(all.join(sweep::FILE)).expect("the sweep");
-    let sweep = read_sweep(&text, Path::new("sweep.json")).expect("a sweep");
+    let text = fs::read(all.join(Sweep::NAME)).expect("the sweep");
+    let sweep = Sweep::parse(&text, Path::new("sweep.json")).expect("a sweep");
     let number = |value| AxisValue::Number(value);
     let points = [[4.0, 0.0], [4.0, 0.2], [7.0, 0.0], [7.0, 0.2]].map(|point| point.map(number).to_vec());
     let axes: Vec<_> = sweep.axes.iter().map(|axis| (axis.key.as_str(), axis.label.as_str())).collect();
@@ -203,7 +204,7 @@ fn no_split_and_no_order_changes_a_byte() {
         let whole = dir.path().join(name);
         succeeds(run(&whole, &[]));
         let expected = results(&whole);
-        assert!(expected.contains_key(sweep::FILE) && expected.keys().any(|name| name.starts_with("skills/")));
+        assert!(expected.contains_key(Sweep::NAME) && expected.keys().any(|name| name.starts_with("skills/")));
         for (number, way) in [
             &["--cohort", "1", "--threads", "1"][..],
             &["--cohort", "3", "--iterations", "37"],

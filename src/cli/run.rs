@@ -8,7 +8,7 @@ use super::signals::Signals;
 use super::{preview, report};
 use crate::config::Overrides;
 use crate::experiment::Experiment;
-use crate::run_folder::file_system::{Disk, FileSystem};
+use crate::run_folder::file_system::{FileSystem, OsFileSystem};
 use crate::run_folder::{State, folder, tables};
 use crate::train::batch_group::groups;
 use crate::train::run::Options;
@@ -121,7 +121,7 @@ fn seconds(text: &str) -> Result<Duration, String> {
 
 /// Whether nothing is there yet: no folder, or an empty one.
 fn is_new(out: &Path) -> bool {
-    match FileSystem.list(out) {
+    match OsFileSystem.list(out) {
         Ok(names) => names.is_empty(),
         Err(error) => error.kind() == ErrorKind::NotFound,
     }

@@ -5,10 +5,9 @@ use super::error::ReportError;
 use super::figure::Figure;
 use super::results::RunResults;
 use super::{figure2, floor_plan, learning_curves, rooms, sweep, trajectory_plot};
-use crate::run_folder::{FinishedRun, RecordError, Trajectory, folder, sensor_readings, trajectories};
+use crate::run_folder::{FinishedRun, PlaceReading, Trajectory, folder};
 use crate::world::{World, load};
 use std::collections::BTreeMap;
-use std::path::Path;
 
 /// Arms whose example trials are drawn.
 const ARMS: usize = 2;
@@ -25,14 +24,14 @@ pub fn draw(run: &FinishedRun, results: &RunResults) -> Result<Vec<Figure>, Repo
         figures.extend(figure2::equal_cost(&comparison));
         figures.extend(rooms::draw(&comparison, &rooms::of(&comparison, &results.summary.rooms)));
         let leaders: Vec<&str> = comparison.leaders().map(|series| series.arm.as_str()).collect();
-        let trajectories = read(run, trajectories::FILE, trajectories::read_trajectories)?;
+        let trajectories: Vec<Trajectory> = run.json()?.unwrap_or_default();
         let shown = chosen(&trajectories, &leaders)
             .into_iter()
             .filter_map(|trajectory| Some(trajectory_plot::draw(worlds.get(&trajectory.world)?, trajectory)));
         figures.extend(shown);
     }
     figures.extend(learning_curves::draw(&results.summary));
-    let readings = read(run, sensor_readings::FILE, sensor_readings::read_places)?;
+    let readings: Vec<PlaceReading> = run.json()?.unwrap_or_default();
     for (file, world) in &worlds {
         match file == folder::WORLD {
             true => figures.extend(floor_plan::draw_all(world, &readings)),
@@ -54,16 +53,6 @@ fn chosen<'a>(trajectories: &'a [Trajectory], leaders: &[&str]) -> Vec<&'a Traje
     arms.truncate(ARMS);
     let of_arm = |arm: &&str| trajectories.iter().filter(|trajectory| trajectory.arm == *arm).collect::<Vec<_>>();
     arms.iter().flat_map(of_arm).collect()
-}
-
-/// The content of a result file that a run may lack.
-fn read<T>(
-    run: &FinishedRun,
-    file: &str,
-    parse: impl Fn(&[u8], &Path) -> Result<Vec<T>, RecordError>,
-) -> Result<Vec<T>, ReportError> {
-    let Some(bytes) = run.content(file)? else { return Ok(Vec::new()) };
-    Ok(parse(&bytes, &run.dir().join(file))?)
 }
 
 /// The floor plans that a run holds, by file: the config's own, and those of other arms and alterations.

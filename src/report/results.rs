@@ -5,8 +5,6 @@ use super::error::ReportError;
 use super::summary::{self, DivergedLearner, Summary};
 use super::sweep::SweepResults;
 use super::training::{self, TrainingCurve};
-use crate::run_folder::failures::failures_of;
-use crate::run_folder::sweep::{self, read_sweep};
 use crate::run_folder::{Divergence, FinishedRun, RecordError, tables};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -33,13 +31,7 @@ impl RunResults {
         let (names, rows) = table(run, tables::EVALUATIONS, tables::parse_evaluations)?;
         let seeds = &run.manifest().provenance.seeds;
         let summary = summary::summarise(&names, &rows, seeds, &diverged(run)?);
-        let swept = match run.content(sweep::FILE)? {
-            Some(bytes) => {
-                let sweep = read_sweep(&bytes, &run.dir().join(sweep::FILE))?;
-                Some(SweepResults::new(sweep, &summary, seeds))
-            }
-            None => None,
-        };
+        let swept = run.json()?.map(|sweep| SweepResults::new(sweep, &summary, seeds));
         let summary = if swept.is_some() { summary.first_points() } else { summary };
         let (names, mut rows) = table(run, tables::TRIALS, tables::parse_trials)?;
         if swept.is_some() {
@@ -68,5 +60,6 @@ fn table<T: Default>(
 
 fn diverged(run: &FinishedRun) -> Result<Vec<DivergedLearner>, RecordError> {
     let told = |Divergence { arm, point, seed, skill, trial, .. }| DivergedLearner { arm, point, seed, skill, trial };
-    Ok(failures_of(run)?.into_iter().map(told).collect())
+    let failures: Vec<Divergence> = run.json()?.unwrap_or_default();
+    Ok(failures.into_iter().map(told).collect())
 }

@@ -11,11 +11,8 @@ use super::trajectories::trajectories;
 use crate::backend::Backend;
 use crate::config::plan::Plan;
 use crate::layout::TRIAL_WORDS;
-use crate::run_folder::failures::{self, write_failures};
-use crate::run_folder::sweep::{self, write_sweep};
 use crate::run_folder::tables::{EVALUATIONS, NO_ROOM, PLANNER, TRAINED, TRIALS, TableWriter};
-use crate::run_folder::trajectories::{self, write_trajectories};
-use crate::run_folder::{EvaluationRow, Provenance, RecordError, RunFolder, Sums, TrialRow, sensor_readings};
+use crate::run_folder::{EvaluationRow, Provenance, RecordError, RunFolder, Sums, TrialRow};
 use crate::world::World;
 use glam::Vec2;
 
@@ -65,13 +62,13 @@ pub fn finish(
     bound_rows(plan, groups).into_iter().try_for_each(|row| evaluations.push(row))?;
     files.end(TRIALS, trials.finish()?)?;
     files.end(EVALUATIONS, evaluations.finish()?)?;
-    files.add(sensor_readings::FILE, &sensor_readings::write_places(&observation::places(plan.world(), backend)?)?)?;
-    files.add(trajectories::FILE, &write_trajectories(&examples)?)?;
+    files.add_json(&observation::places(plan.world(), backend)?)?;
+    files.add_json(&examples)?;
     if let Some(sweep) = &plan.sweep {
-        files.add(sweep::FILE, &write_sweep(sweep)?)?;
+        files.add_json(sweep)?;
     }
     if !failures.is_empty() {
-        files.add(failures::FILE, &write_failures(&failures)?)?;
+        files.add_json(&failures)?;
     }
     folder.complete(files, provenance(failures.len()))?;
     Ok(())

@@ -8,7 +8,7 @@ use skilltree::config::plan::Plan;
 use skilltree::config::{Overrides, load};
 use skilltree::env::workgroup::CohortData;
 use skilltree::layout::{Episode, LESSON_HEADER_WORDS, LearnerState, PHASE_FAILED, PHASE_REPLAY, Robot};
-use skilltree::run_folder::failures::{Divergence, Number, failures_of};
+use skilltree::run_folder::failures::{Divergence, Number};
 use skilltree::run_folder::tables::{EVALUATIONS, TRIALS, read_evaluations, read_trials};
 use skilltree::run_folder::{FinishedRun, Provenance, RunFolder};
 use skilltree::train::batch::train;
@@ -261,7 +261,7 @@ fn a_run_lists_its_failures() {
     let options = Options { cohort: Some(6), ..Options::default() };
     run(&plan, &[group], folder, &mut backend, options, Provenance::default(), &mut listener).expect("it runs");
     let finished = FinishedRun::read(&dir).expect("complete");
-    let failures = failures_of(&finished).expect("a list");
+    let failures: Vec<Divergence> = finished.json().expect("a list").unwrap_or_default();
     assert_eq!((failures.len(), failures[0].seed, failures[0].trial), (1, 5, 2));
     assert_eq!(failures, listener.diverged);
     let notes = &finished.manifest().provenance.notes;
