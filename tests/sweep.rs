@@ -2,10 +2,13 @@
 
 mod support;
 
+use bytemuck::Pod;
 use skilltree::backend::cpu::cpu_backend;
 use skilltree::backend::{Backend, BackendError};
-use skilltree::config::plan::Plan;
+use skilltree::config::plan::{ArmPlan, Plan, SkillPlan, TeacherPlan, Threshold};
 use skilltree::config::{Overrides, load};
+use skilltree::env::workgroup::CohortData;
+use skilltree::layout::{HyperParams, Noise};
 use skilltree::run_folder::sweep::AxisValue;
 use skilltree::run_folder::tables::{EVALUATIONS, TRIALS, read_evaluations, read_trials};
 use skilltree::run_folder::{JsonFile, Sweep};
@@ -190,6 +193,101 @@ fn arms_share_a_batch_and_skills_where_their_learners_see_the_same() {
         assert!(found.iter().all(|shared| shared.pretrained));
         assert_eq!((found.len(), groups(&plan).expect("groups").len()), (shared, 1), "{axis}");
     }
+}
+
+/// A record with one word changed: a whole number by 1, any other by an eighth or more.
+fn flipped<T: Pod>(record: &T, word: usize) -> T {
+    let mut words: Vec<u32> = bytemuck::cast_slice(std::slice::from_ref(record)).to_vec();
+    words[word] ^= if words[word] < 1 << 20 { 1 } else { 1 << 20 };
+    bytemuck::pod_read_unaligned(bytemuck::cast_slice(&words))
+}
+
+fn words<T>() -> std::ops::Range<usize> {
+    0..size_of::<T>() / 4
+}
+
+/// An arm's skills that are learned before its root are its own alone as soon as anything of them differs.
+#[test]
+fn every_word_keeps_arms_apart_whose_learners_see_it() {
+    let mut plan =
+        swept("tests/support/tree.toml", "sweep.skill.top.applicable.dock=[-0.1, 0.2]", &["arms=['persistent']"]);
+    let arm = plan.arms[0].clone();
+    let mut apart = |change: &dyn Fn(&mut ArmPlan)| {
+        let mut other = arm.clone();
+        change(&mut other);
+        plan.arms = vec![arm.clone(), other];
+        shared_skills(&plan).len() == 2
+    };
+    assert!(!apart(&|_| ()) && !apart(&|arm| (arm.name, arm.point) = ("other".to_owned(), 1)));
+    let root = arm.skills.len() - 1;
+    for skill in 0..=root {
+        for word in words::<HyperParams>() {
+            let change = |arm: &mut ArmPlan| arm.skills[skill].params = flipped(&arm.skills[skill].params, word);
+            assert_eq!(apart(&change), skill < root, "word {word} of skill {skill}");
+        }
+    }
+    for word in words::<Noise>() {
+        assert!(apart(&|arm| arm.noise = flipped(&arm.noise, word)), "word {word} of the noise");
+    }
+    for word in words::<TeacherPlan>() {
+        assert!(apart(&|arm| arm.teacher = flipped(&arm.teacher, word)), "word {word} of the teacher");
+    }
+    let changes: [fn(&mut SkillPlan); 11] = [
+        |skill| skill.name.push('x'),
+        |skill| skill.inputs.clear(),
+        |skill| skill.children.clear(),
+        |skill| skill.applicable[0] = Some(Threshold::Fixed(0.5)),
+        |skill| skill.mirror = Some(0),
+        |skill| skill.oracle = true,
+        |skill| skill.starts[0].0.push('x'),
+        |skill| skill.starts[0].1 *= 0.5,
+        |skill| skill.eval_starts.push('x'),
+        |skill| skill.eval_at.push(1),
+        |skill| skill.goal ^= 1,
+    ];
+    for (number, change) in changes.iter().enumerate() {
+        assert!(apart(&|arm| change(&mut arm.skills[0])), "change {number} below the root");
+        assert!(!apart(&|arm| change(&mut arm.skills[root])), "change {number} of the root");
+    }
+    assert!(apart(&|arm| arm.world += 1) && apart(&|arm| drop(arm.skills.remove(0))));
+}
+
+/// Whatever arms of one batch may differ in, nothing of it reaches what they share: shapes, tables, taught lessons.
+#[test]
+fn what_a_batch_shares_knows_nothing_of_its_arms() {
+    let cuts = [
+        "world=../tests/support/small.toml",
+        "arms=['taught-adam']",
+        "learning.hidden=16",
+        "teacher.lessons=16",
+        "teacher.eval_episodes=1",
+    ];
+    let mut plan = swept("configs/docking.toml", "sweep.skill.dock.trials=[4, 7]", &cuts);
+    let arm = plan.arms[0].clone();
+    let with = |words: &[usize]| {
+        let mut other = arm.clone();
+        for word in words {
+            other.skills[0].params = flipped(&other.skills[0].params, *word);
+        }
+        other
+    };
+    let mut sharing = |other: ArmPlan| {
+        plan.arms = vec![arm.clone(), other];
+        shared_skills(&plan).len() == 1
+    };
+    let (own, seen): (Vec<usize>, Vec<usize>) = words::<HyperParams>().partition(|word| sharing(with(&[*word])));
+    println!("a batch's arms may differ in words {own:?}, and not in {seen:?}");
+    assert!(own.len() > seen.len() && sharing(with(&own)));
+    let mut left = |arm: ArmPlan| {
+        plan.arms = vec![arm];
+        let group = groups(&plan).expect("a group").remove(0);
+        let CohortData { skills, tables, bank, .. } = group.shared;
+        (bytemuck::cast_slice::<_, u32>(&skills).to_vec(), tables, bank)
+    };
+    let expected = left(arm.clone());
+    assert!(expected.2.len() > 100 && left(with(&own)) == expected);
+    // The comparison can fail.
+    assert!(left(with(&[std::mem::offset_of!(HyperParams, noise.actuator) / 4])).2 != expected.2);
 }
 
 #[test]

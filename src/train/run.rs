@@ -3,11 +3,11 @@
 use super::batch::{pretrain, train};
 use super::batch_group::{BatchGroup, LearnerId, group_of};
 use super::callbacks::{Callbacks, Interrupted};
-use super::checkpoint::{Checkpoint, CohortCallbacks, INTERVAL, SaveTimer};
-use super::cohort_state::CohortState;
+use super::checkpoint::{Checkpoint, CohortState};
+use super::cohort_callbacks::{CohortCallbacks, INTERVAL, SaveTimer};
 use super::committed::Parts;
 use super::pretraining::{Pretrained, Pretraining, SharedSkills, shared_skills};
-use super::schedule::{Wave, going_on, trials_of, waves};
+use super::schedule::{Wave, going_on, waves};
 use super::write_results;
 use crate::backend::{Backend, BackendError};
 use crate::config::plan::Plan;
@@ -73,7 +73,7 @@ pub fn run(
         shared: shared_skills(plan),
         options,
         timer: SaveTimer::new(options.checkpoint.unwrap_or(INTERVAL)),
-        finished: parts.learners().map(|id| trials_of(&plan.arms[id.arm])).sum(),
+        finished: parts.learners().map(|id| plan.arms[id.arm].trials()).sum(),
         parts,
         folder: &mut folder,
         backend,
@@ -224,7 +224,7 @@ impl Run<'_> {
         // Those whose turn is still to come have the trials of the shared skills behind them.
         let mut others = self.lacking(shared);
         others.retain(|id| !learners.contains(id));
-        let of = |id: &LearnerId| trials_of(&plan.arms[id.arm]);
+        let of = |id: &LearnerId| plan.arms[id.arm].trials();
         let of_root = |id: &LearnerId| plan.arms[id.arm].skills.last().map_or(0, |root| u64::from(root.params.trials));
         let before = self.finished + others.iter().map(|id| of(id) - of_root(id)).sum::<u64>();
         let (backend, mut callbacks) = self.watch(shared, before, (1, 1));

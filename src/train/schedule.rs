@@ -6,7 +6,7 @@
 
 use super::batch_group::{BatchGroup, LearnerId, group_index};
 use super::pretraining::{SharedSkills, shared_skills};
-use crate::config::plan::{ArmPlan, Plan};
+use crate::config::plan::Plan;
 use std::collections::BTreeMap;
 
 /// Cohorts that go on from the same pretrained learners.
@@ -59,11 +59,6 @@ pub fn going_on<E>(
     };
     let most = size(shared.bytes_per_learner(groups))?.max(1);
     Ok(cohorts(plan, groups, &shared, seeds, most, &done))
-}
-
-/// Trials of all skills of an arm.
-pub(super) fn trials_of(arm: &ArmPlan) -> u64 {
-    arm.skills.iter().map(|skill| u64::from(skill.params.trials)).sum()
 }
 
 fn cohorts(

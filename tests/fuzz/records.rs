@@ -11,7 +11,8 @@ use skilltree::run_folder::weights::read_weights;
 use skilltree::run_folder::{Divergence, JsonFile, PlaceReading, Sweep, Trajectory};
 use skilltree::train::batch::train;
 use skilltree::train::checkpoint::Checkpoint;
-use skilltree::train::result::{LearnerResult, decode, encode};
+use skilltree::train::codec::{encode, read};
+use skilltree::train::result::LearnerResult;
 use skilltree::train::run::RunError;
 use snap::{read::FrameDecoder, write::FrameEncoder};
 use std::io::{Read, Write};
@@ -50,6 +51,7 @@ fn compressed(random: &mut mutate::StepRandom, seeds: &[Vec<u8>]) -> Vec<u8> {
 #[test]
 fn parts() {
     let seeds = [bytes(&results()), bytes(&results()[..1]), bytes(&[])];
+    let decode = read::<Vec<LearnerResult>>;
     let read = |input: &[u8]| match decode(input) {
         // Results with NaN are equal to none: their bytes tell.
         Ok(results) if decode(&bytes(&results)).is_ok_and(|again| bytes(&again) == bytes(&results)) => Ok(true),
