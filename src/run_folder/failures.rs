@@ -92,10 +92,8 @@ impl TryFrom<Form> for Number {
     fn try_from(form: Form) -> Result<Self, String> {
         match form {
             Form::Finite(value) => Ok(Self(value)),
-            Form::Word(word) => match word.as_str() {
-                "NaN" => Ok(Self(f32::NAN)),
-                "inf" => Ok(Self(f32::INFINITY)),
-                "-inf" => Ok(Self(f32::NEG_INFINITY)),
+            Form::Word(word) => match word.parse::<f32>() {
+                Ok(value) if !value.is_finite() => Ok(Self(value)),
                 _ => Err(format!("`{word}` is no number")),
             },
         }

@@ -88,9 +88,6 @@ impl Forecast {
 
 /// Iterations per second of the largest cohort, found by letting it train for a moment: at most about `most`, and less
 /// where the whole run is short. The backend's memory is overwritten.
-///
-/// # Errors
-/// Where the backend fails.
 pub fn measure(
     plan: &Plan,
     groups: &[BatchGroup],

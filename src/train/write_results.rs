@@ -18,9 +18,6 @@ use glam::Vec2;
 /// Writes the results of an experiment, all of whose learners are finished, and the manifest: one learner after
 /// another, so that the memory it takes does not grow with their number. What it did before it was stopped or killed
 /// does no harm: the parts stay until the manifest is there.
-///
-/// # Errors
-/// Where the folder or the device fails, or the callbacks stop it.
 pub fn finish(
     plan: &Plan,
     groups: &[BatchGroup],
