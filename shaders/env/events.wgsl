@@ -4,11 +4,24 @@ const NOWHERE: u32 = 255u;
 const SIDE_FIRST: u32 = 2u;
 const SIDE_LAST: u32 = 10u;
 
+fn holds(area: Area, x: f32, y: f32) -> bool {
+    return x >= area.x0 && x < area.x1 && y >= area.y0 && y < area.y1;
+}
+
+// Events of this region where an action took the robot from (`before_x`, `before_y`) to (`x`, `y`).
+fn crossing_events(area: Area, before_x: f32, before_y: f32, x: f32, y: f32) -> u32 {
+    let before = holds(area, before_x, before_y);
+    let now = holds(area, x, y);
+    let inside = select(0u, IN_REGION, now);
+    let entered = select(0u, ENTERED_REGION, now && !before);
+    let left = select(0u, LEFT_REGION, before && !now);
+    return inside | entered | left;
+}
+
 fn room_of(x: f32, y: f32) -> u32 {
     var found = NOWHERE;
     for (var room = 0u; room < world.rooms; room++) {
-        let area = world.room[room];
-        let inside = x >= area.x0 && x < area.x1 && y >= area.y0 && y < area.y1;
+        let inside = holds(world.room[room], x, y);
         found = select(found, room, inside && found == NOWHERE);
     }
     return found;
@@ -19,8 +32,7 @@ fn passed_door(origin: u32, x: f32, y: f32) -> u32 {
     let room = room_of(x, y);
     var clear = true;
     for (var door = 0u; door < world.doors; door++) {
-        let way = world.doorway[door];
-        let inside = x >= way.x0 && x < way.x1 && y >= way.y0 && y < way.y1;
+        let inside = holds(world.doorway[door], x, y);
         clear = clear && !inside;
     }
     let passed = clear && room != NOWHERE && origin != NOWHERE && room != origin;
@@ -45,11 +57,28 @@ fn following_wall(near: u32, far: u32, action: u32, events: u32) -> u32 {
     return on_left | on_right;
 }
 
+// `LIT` where some bearing is lit after an action.
+fn seeing_light(events: u32) -> u32 {
+    let lit = lit_bearings() != 0u && (events & ACTED) == ACTED;
+    return select(0u, LIT, lit);
+}
+
+fn skill_events(skill: u32) -> u32 {
+    var events = agent.events;
+    // Where a trial begins nothing has happened yet.
+    let regions = select(0u, skills[skill].regions, (events & ACTED) == ACTED);
+    for (var region = 0u; region < regions; region++) {
+        let area = skills[skill].region[region];
+        let crossed = crossing_events(area, agent.before_x, agent.before_y, agent.x, agent.y);
+        events |= crossed << (EVENTS + region * REGION_EVENTS);
+    }
+    return events;
+}
+
 fn reward_of(skill: u32, events: u32) -> f32 {
     var sum = 0.0f;
-    for (var event = 0u; event < EVENTS; event++) {
-        let amount = params[params_base + skill].reward[event];
-        sum = sum + select(0.0f, amount, ((events >> event) & 1u) == 1u);
+    for (var left = events; left != 0u; left &= left - 1u) {
+        sum = sum + params[params_base + skill].reward[countTrailingZeros(left)];
     }
     return sum;
 }

@@ -61,7 +61,7 @@ fn evaluate(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_i
         }
         draw_step(lane, test_stream(root | (dispatch.test_number << 8u), number, agent.step, PURPOSE_TEST));
         observe_and_score(lane, root);
-        let achieved = (agent.events & skills[root].ends) != 0u;
+        let achieved = (skill_events(root) & skills[root].ends) != 0u;
         if achieved || agent.step >= params[s].max_steps {
             episode.state = select(EPISODE_TRUNCATED, EPISODE_TERMINATED, achieved);
         } else {

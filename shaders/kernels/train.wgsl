@@ -93,7 +93,7 @@ fn act(lane: u32) {
     if step > 0u {
         write_outcome(lane, words, lesson, step - 1u, agent.events, agent.earned);
     }
-    let achieved = (agent.events & skills[root].ends) != 0u;
+    let achieved = (skill_events(root) & skills[root].ends) != 0u;
     value_children(lane, root);
     q_values(lane, root);
     let choices = action_mask(root, params[s].persist_training == 1u);

@@ -36,11 +36,11 @@ fn action_mask(n: u32, persist: bool) -> Choices {
     }
     // An action ends by itself; a skill ends where its goal is achieved.
     let skill = own != 0u && code >= SKILL_CODE;
-    var goal = 0u;
+    var achieved = false;
     if skill {
-        goal = skills[code - SKILL_CODE].ends;
+        let below = code - SKILL_CODE;
+        achieved = (skill_events(below) & skills[below].ends) != 0u;
     }
-    let achieved = (agent.events & goal) != 0u;
     let fresh = (applicable & ~before & ~own) != 0u;
     let lost = params[s].interrupt == 1u && (applicable & own) == 0u;
     let late = params[s].child_timeout > 0u && run_steps(agent.run[n]) >= params[s].child_timeout;

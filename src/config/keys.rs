@@ -65,11 +65,11 @@ keys! {
     SKILL_APPLICABLE = "skill.*.applicable", Some("{}"), Other(TABLE, "{ child = threshold } with numbers between -1 and 1, learned, or learned(PROBABILITY)"), Ours, "The value of its best child, in units of reward_scale, from which a skill among the children is applicable; learned is where success has probability 0.5. Those left out always are.";
     SKILL_PERSISTENCE = "skill.*.persistence", Some("true"), Other(&["boolean", "string"], "true, false or training"), Paper, "Whether a chosen child is kept to, and not in tests if training.";
     SKILL_ORACLE = "skill.*.oracle", Some("false"), Flag, Ours, "The planner, which knows floor plan and pose, stands in for the nets of a skill over actions; lessons and trials are then not used. Privileged.";
-    SKILL_REWARD = "skill.*.reward", None, Other(TABLE, "{ event = amount }"), Ours, "Paid for events; 0 for those left out; required.";
+    SKILL_REWARD = "skill.*.reward", None, Other(TABLE, "{ event = amount }"), Ours, "Paid for events (see `skilltree keys events`); 0 for those left out; required. step = -1 is a cost of every step.";
     SKILL_STARTS = "skill.*.starts", Some("'anywhere'"), Other(&["string", "object"], "a region, or { region = share } with shares that sum to 1"), Paper, "Where training trials start.";
     SKILL_EVAL_STARTS = "skill.*.eval_starts", Some("'anywhere'"), Other(TEXT, "a region"), Ours, "Where test trials start.";
     SKILL_EVAL_AT = "skill.*.eval_at", None, Other(LIST, "ascending whole numbers"), Ours, "Trials after which the skill is tested; as evaluate.at if left out.";
-    SKILL_GOAL = "skill.*.goal", Some("[]"), Other(LIST, "a list of events"), Ours, "Events that end a trial as achieved.";
+    SKILL_GOAL = "skill.*.goal", Some("[]"), Other(LIST, "a list of events"), Ours, "Events (see `skilltree keys events`) that end a trial as achieved.";
 
     TRANSFER_WORLD = "transfer.*.world", None, Other(TEXT, "a path"), Ours, "The world file in which learned roots are tested once more, without training; the config's own if left out.";
     TRANSFER_NOISE = "transfer.*.noise", None, Other(TABLE, "a table as robot.noise"), Ours, "The noise with which they are, laid over robot.noise; each arm's own if left out.";

@@ -1,7 +1,7 @@
 //! Skills that are the mirror image of another one and use its nets.
 
 use super::plan::{Child, Event, SkillPlan};
-use crate::layout::HyperParams;
+use crate::layout::{EVENTS, HyperParams};
 use crate::toml::error::ConfigError;
 use crate::toml::reader::Item;
 
@@ -44,7 +44,8 @@ pub(super) fn image(
         return Err(item.error(message, hint));
     }
     let mut params = HyperParams { lessons: 0, trials: 0, ..source.params };
-    let mut goal = 0;
+    // Regions stay where they are: what happens there is its own image.
+    let mut goal = source.goal & !(1_u32 << EVENTS).wrapping_sub(1);
     for seen in Event::ALL {
         params.reward[seen.mirrored() as usize] = source.params.reward[seen as usize];
         if source.goal & seen.bit() != 0 {

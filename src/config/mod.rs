@@ -9,6 +9,7 @@
 mod arm;
 mod arms;
 mod children;
+mod events;
 mod hierarchy;
 mod inputs;
 pub mod keys;

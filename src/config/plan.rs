@@ -6,7 +6,7 @@
 mod skill;
 mod sweep;
 
-pub use crate::layout::{Action, Event, Input, Noise};
+pub use crate::layout::{Action, Event, Input, Noise, RegionEvent};
 pub use skill::{Child, SkillPlan, Threshold};
 pub use sweep::{Axis, AxisValue, Design, Scale, Sweep};
 

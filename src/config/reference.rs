@@ -1,7 +1,8 @@
 //! The reference of every key, as text and as JSON schemas for editors.
 
+use super::events::event_names;
 use super::keys::{self, Allowed, DefaultSource, KeyRow};
-use crate::layout::{Action, Event, Input};
+use crate::layout::{Action, Event, Input, RegionEvent};
 use crate::world;
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
@@ -11,14 +12,16 @@ use std::fmt::Write;
 pub fn text(pattern: &str) -> String {
     let mut out = String::new();
     section(&mut out, "Config files", keys::all(), pattern);
+    let docs = Event::ALL.iter().map(|event| event.doc()).chain(RegionEvent::ALL.iter().map(|event| event.doc()));
     let names = [
         ("Actions", Action::ALL.iter().map(|a| (a.name().to_owned(), a.doc())).collect::<Vec<_>>()),
-        ("Events", Event::ALL.iter().map(|e| (e.name().to_owned(), e.doc())).collect()),
+        ("Events", event_names().into_iter().zip(docs).collect()),
         ("Inputs", Input::ALL.iter().map(|i| (format!("{} ({})", i.name(), i.width_in_words()), i.doc())).collect()),
     ];
     for (title, rows) in names {
+        let wanted = |text: &str| holds(text, pattern);
         let found: Vec<_> =
-            rows.into_iter().filter(|(name, doc)| holds(name, pattern) || holds(doc, pattern)).collect();
+            rows.into_iter().filter(|(name, doc)| wanted(title) || wanted(name) || wanted(doc)).collect();
         if !found.is_empty() {
             let _ = writeln!(out, "{title}\n");
         }

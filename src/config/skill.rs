@@ -1,18 +1,18 @@
 //! The keys of one `[skill.NAME]` table.
 
+use super::events::{Complain, EventReader};
 use super::hierarchy::Link;
 use super::keys;
-use super::plan::{Child, Event, SkillPlan, Threshold};
+use super::plan::{Child, SkillPlan, Threshold};
 use super::unused_keys::UnusedKeys;
 use super::worlds::CachedWorld;
 use super::{children, inputs, mirror};
 use crate::layout::choices::OPTIMISER_SGD;
 use crate::layout::params::{ALWAYS, MAX_TRIALS};
-use crate::layout::{EVENTS, HyperParams, MAX_CHILDREN, MAX_STARTS};
+use crate::layout::{HyperParams, MAX_CHILDREN, MAX_STARTS};
 use crate::toml::document::{Node, Value};
 use crate::toml::error::{ConfigError, suggest};
 use crate::toml::reader::{Item, KeyedTable};
-use crate::world::World;
 
 /// What the skills of an arm are read with, besides their own tables.
 #[derive(Debug)]
@@ -46,11 +46,12 @@ impl SkillReader<'_> {
         let starts = starts(&section.required(&keys::SKILL_STARTS, "\"anywhere\"")?, cached)?;
         let tests = section.required(&keys::SKILL_EVAL_STARTS, "\"anywhere\"")?;
         let eval_starts = region(tests.text()?, &|message, hint| tests.error(message, hint), cached)?;
-        let goal = goal(&section.required(&keys::SKILL_GOAL, "[\"docked\"]")?, world)?;
+        let mut events = EventReader::new(world);
+        let goal = events.goal(&section.required(&keys::SKILL_GOAL, "[\"docked\"]")?)?;
         let oracle = oracle(&section, link)?;
         let mut params = self.learning(&section, &link.item, unused)?;
         section.fill("skill.*.", HyperParams::rows(), &mut params)?;
-        params.reward = reward(&section.required(&keys::SKILL_REWARD, "{ docked = 100, collision = -10 }")?, world)?;
+        params.reward = events.reward(&section.required(&keys::SKILL_REWARD, "{ docked = 100, collision = -10 }")?)?;
         params.threshold = [ALWAYS; MAX_CHILDREN];
         for (value, own) in params.threshold.iter_mut().zip(&applicable) {
             // A learned one is always exceeded until it is known.
@@ -75,6 +76,7 @@ impl SkillReader<'_> {
             eval_starts,
             eval_at: self.eval_at(&section)?.unwrap_or_else(|| self.eval_at.to_vec()),
             goal,
+            regions: events.regions,
             params,
         };
         inputs::check(&asked, &skill, world.map_or(0, |world| world.rooms.len()))?;
@@ -176,46 +178,6 @@ fn oracle(section: &KeyedTable<'_>, link: &Link<'_>) -> Result<bool, ConfigError
         );
     }
     Ok(oracle)
-}
-
-/// Makes a complaint, from its message and hint, about the place of a name.
-type Complain<'a> = dyn Fn(String, String) -> ConfigError + 'a;
-
-/// An event that can happen in this world.
-fn event(name: &str, place: &Complain<'_>, world: Option<&World>) -> Result<Event, ConfigError> {
-    let names = Event::ALL.map(Event::name);
-    let Some(code) = names.iter().position(|known| *known == name) else {
-        return Err(place(format!("`{name}` is not one of the events"), suggest(name, "events", &names)));
-    };
-    match world.and_then(|world| Some((world, world.lacks(Event::ALL[code].needs())?.name()))) {
-        None => Ok(Event::ALL[code]),
-        Some((world, lacking)) => {
-            let message = format!("`{name}` cannot happen: the world `{}` has no {lacking}", world.name);
-            Err(place(message, format!("add {lacking} to the world file, or drop this event")))
-        }
-    }
-}
-
-fn reward(item: &Item<'_>, world: Option<&World>) -> Result<[f32; EVENTS], ConfigError> {
-    let mut reward = [0.0; EVENTS];
-    for (entry, amount) in item.table()?.all() {
-        let event = event(&entry.key, &|message, hint| entry.origin.error(message, hint), world)?;
-        reward[event as usize] = amount.number(keys::AMOUNT)?;
-    }
-    if reward == [0.0; EVENTS] {
-        let message = format!("`{}` pays for nothing, so there is nothing to learn", item.name);
-        return Err(item.error(message, "write { docked = 100, collision = -10 }, or other events and amounts"));
-    }
-    Ok(reward)
-}
-
-fn goal(item: &Item<'_>, world: Option<&World>) -> Result<u32, ConfigError> {
-    // A skill may go on until its step limit.
-    if item.items()?.is_empty() {
-        return Ok(0);
-    }
-    let events = item.distinct(EVENTS, |one| event(one.text()?, &|message, hint| one.error(message, hint), world))?;
-    Ok(events.iter().fold(0, |bits, event| bits | event.bit()))
 }
 
 /// The name of a region in which a trial can start.

@@ -1,6 +1,7 @@
 //! Other circumstances in which the roots that were learned are tested once more.
 
 use super::arms::small_name;
+use super::events::lacking_region;
 use super::plan::{Alteration, ArmPlan, Event, Noise};
 use super::worlds::{CachedWorld, Worlds};
 use super::{keys, robot};
@@ -81,6 +82,10 @@ fn check_root(cached: CachedWorld<'_>, arm: &ArmPlan, place: &SourceSpan) -> Res
             let message = format!("`{}` cannot happen: the world `{}` has no {lacking}", event.name(), world.name);
             return Err(place.error(message, format!("add {lacking} to it: tests of `{}` end with this", root.name)));
         }
+    }
+    if let Some(region) = root.regions.iter().find(|region| world.region_area(region).is_none()) {
+        let hint = format!("give the altered world this region: `{}` is about it", root.name);
+        return Err(place.error(lacking_region(region, world), hint));
     }
     Ok(())
 }

@@ -4,7 +4,7 @@ use super::workgroup::Workgroup;
 use crate::layout::Moved;
 use crate::layout::actions::{ACTION_TURN, ACTIONS};
 pub use crate::layout::actions::{BACKWARD, FORWARD, NO_ACTION};
-pub use crate::layout::events::{BESIDE_LEFT, BESIDE_RIGHT, COLLISION, DOCKED, PASSED_DOOR};
+pub use crate::layout::events::{ACTED, BESIDE_LEFT, BESIDE_RIGHT, COLLISION, DOCKED, LIT, PASSED_DOOR};
 use crate::math::functions::{sin_cos, wrap_degrees};
 
 /// Degrees that an action turns, without noise.

@@ -1,6 +1,6 @@
 //! One primitive step of a robot in a trial: it observes, which settles what its last action earned, and it acts.
 
-use super::motion::{COLLISION, NO_ACTION, PASSED_DOOR};
+use super::motion::{ACTED, COLLISION, NO_ACTION, PASSED_DOOR};
 use super::observe::DRAW_ACTUATOR;
 use super::workgroup::Workgroup;
 use crate::math::functions::flush;
@@ -14,7 +14,8 @@ impl Workgroup<'_> {
         (self.forms.observe)(self, x, y, heading, bumpers, self.params[s].noise);
         let (near, far) = (self.params[s].beside_near, self.params[s].beside_far);
         self.agent.events |= self.record.observation.following_wall(near, far, self.agent.action, self.agent.events);
-        self.agent.earned = self.reward_of(skill, self.agent.events);
+        self.agent.events |= self.record.observation.seeing_light(self.agent.events);
+        self.agent.earned = self.reward_of(skill, self.skill_events(skill));
         self.agent.reward += self.agent.earned;
         self.agent.returned += self.agent.discount * self.agent.earned;
         self.agent.discount =
@@ -31,6 +32,8 @@ impl Workgroup<'_> {
         let moved = (self.forms.move_body)(self, self.agent.x, self.agent.y, self.agent.heading, action, slip);
         let passed = self.world.passed_door(self.agent.origin, moved.x, moved.y);
         let hit = (moved.events & COLLISION) == COLLISION;
+        self.agent.before_x = self.agent.x;
+        self.agent.before_y = self.agent.y;
         self.agent.x = moved.x;
         self.agent.y = moved.y;
         self.agent.heading = moved.heading;
@@ -40,7 +43,7 @@ impl Workgroup<'_> {
         }
         self.agent.blocked = if hit && self.agent.masks == 1 { action } else { NO_ACTION };
         self.agent.action = action;
-        self.agent.events = moved.events | passed;
+        self.agent.events = moved.events | passed | ACTED;
         self.agent.step += 1;
         self.agent.collisions += u32::from(hit);
     }

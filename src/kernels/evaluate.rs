@@ -44,7 +44,7 @@ impl Workgroup<'_> {
                 self.test_stream(root | (self.dispatch.test_number << 8), number, self.agent.step, Purpose::Test);
             (self.forms.draw_step)(self, stream);
             self.observe_and_score(root);
-            let achieved = (self.agent.events & self.skills[s].ends) != 0;
+            let achieved = (self.skill_events(root) & self.skills[s].ends) != 0;
             if achieved || self.agent.step >= self.params[s].max_steps {
                 episode.state = if achieved { EPISODE_TERMINATED } else { EPISODE_TRUNCATED };
             } else {

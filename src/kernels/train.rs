@@ -95,7 +95,7 @@ impl Workgroup<'_> {
         if step > 0 {
             self.write_outcome(words, lesson, step as usize - 1, self.agent.events, self.agent.earned);
         }
-        let achieved = (self.agent.events & self.skills[s].ends) != 0;
+        let achieved = (self.skill_events(root) & self.skills[s].ends) != 0;
         self.value_children(root);
         self.q_values(root);
         let choices = self.action_mask(root, self.params[s].persist_training == 1);

@@ -52,11 +52,7 @@ macro_rules! events {
 
         /// Number of events.
         pub const EVENTS: usize = [$($text),*].len();
-        /// Name in shaders and value of every event's bit, of their number, and of where they stand.
-        pub(super) const CODES: &[(&str, u32)] = &[
-            $((stringify!($bit), $bit),)*
-            ("EVENTS", EVENTS as u32), ("EVENTS_FROM", EVENTS_FROM), ("DECISION_BIT", DECISION_BIT),
-        ];
+        const BITS: [(&str, u32); EVENTS] = [$((stringify!($bit), $bit)),*];
     };
 }
 
@@ -72,6 +68,77 @@ events! {
     BesideRight = BESIDE_RIGHT 3, "beside-right", mirror BesideLeft, needs None;
     /// The same on the left.
     BesideLeft = BESIDE_LEFT 4, "beside-left", mirror BesideRight, needs None;
+    /// After the action some bearing of the light sensor is lit.
+    Lit = LIT 5, "lit", mirror Lit, needs Some(WorldPart::Light);
+    /// An action was taken, whatever came of it: what it is paid is the cost of a step.
+    Acted = ACTED 6, "step", mirror Acted, needs None;
 }
 
+macro_rules! region_events {
+    ($($(#[doc = $doc:literal])+ $name:ident = $bit:ident $number:literal, $text:literal;)*) => {
+        /// Something that one primitive step can bring about in one of the regions that a skill names.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        #[repr(u32)]
+        pub enum RegionEvent {
+            $($(#[doc = $doc])+ $name = $number,)*
+        }
+
+        $(#[doc = concat!("Bit of [`RegionEvent::", stringify!($name), "`] among those of one region.")]
+        pub const $bit: u32 = 1 << $number;)*
+
+        impl RegionEvent {
+            /// All of them, by number.
+            pub const ALL: [Self; REGION_EVENTS] = [$(Self::$name),*];
+
+            /// The name used in configs, before the region in brackets.
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$name => $text),* }
+            }
+
+            /// When it happens, in words.
+            pub const fn doc(self) -> &'static str {
+                match self { $(Self::$name => concat!($($doc),+)),* }
+            }
+        }
+
+        /// Number of events of each region.
+        pub const REGION_EVENTS: usize = [$($text),*].len();
+        const REGION_BITS: [(&str, u32); REGION_EVENTS] = [$((stringify!($bit), $bit)),*];
+    };
+}
+
+region_events! {
+    /// The action ended with the robot's centre in the region.
+    In = IN_REGION 0, "in";
+    /// The action brought the robot's centre into the region.
+    Entered = ENTERED_REGION 1, "entered";
+    /// The action took the robot's centre out of the region.
+    Left = LEFT_REGION 2, "left";
+}
+
+impl RegionEvent {
+    /// Its place in rewards, and its bit in sets of events, for this one of a skill's regions.
+    pub const fn number(self, region: usize) -> usize {
+        EVENTS + region * REGION_EVENTS + self as usize
+    }
+}
+
+/// Most regions whose events a skill's reward and goal name. Ours.
+pub const MAX_REGIONS: usize = 4;
+/// Events of a skill: those of every region stand behind those that need none.
+pub const SKILL_EVENTS: usize = EVENTS + MAX_REGIONS * REGION_EVENTS;
+
+/// Name in shaders and value of the numbers that have to do with events, without the events' own bits.
+pub(super) const CODES: &[(&str, u32)] = &[
+    ("EVENTS", EVENTS as u32),
+    ("REGION_EVENTS", REGION_EVENTS as u32),
+    ("MAX_REGIONS", MAX_REGIONS as u32),
+    ("SKILL_EVENTS", SKILL_EVENTS as u32),
+    ("EVENTS_FROM", EVENTS_FROM),
+    ("DECISION_BIT", DECISION_BIT),
+];
+/// Name in shaders and value of every event's bit.
+pub(super) const EVENT_BITS: [&[(&str, u32)]; 2] = [&BITS, &REGION_BITS];
+
+const _: () = assert!(SKILL_EVENTS <= 32, "the events of a skill fit no word");
 const _: () = assert!(EVENTS_FROM + EVENTS as u32 <= DECISION_BIT, "an event's bit would meet the decision bit");

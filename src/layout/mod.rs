@@ -27,7 +27,7 @@ mod world_parts;
 pub use actions::{ACTIONS, Action};
 pub use codes::*;
 pub use dispatch::Dispatch;
-pub use events::{EVENTS, Event};
+pub use events::{EVENTS, Event, MAX_REGIONS, REGION_EVENTS, RegionEvent, SKILL_EVENTS};
 pub use macros::Layout;
 pub use params::{HyperParams, Noise};
 pub use prelude::{LAYOUTS, layout_of};

@@ -5,7 +5,7 @@
 //! computed from the others by [`HyperParams::derive`].
 
 use super::choices::{BACKUPS, NOISE_KINDS, OPTIMISER_SGD, OPTIMISERS, POLICIES};
-use super::events::EVENTS;
+use super::events::SKILL_EVENTS;
 use super::schema::Allowed::{self, Choice, Flag, Number, Whole};
 use super::schema::{Bounds, DefaultSource, KeyRow};
 use super::sizes::MAX_CHILDREN;
@@ -198,7 +198,7 @@ params! {
         /// Value above which each child is applicable; `ALWAYS` where it always is.
         threshold: [f32; MAX_CHILDREN];
         /// Amount paid for each event.
-        reward: [f32; EVENTS];
+        reward: [f32; SKILL_EVENTS];
     }
 }
 

@@ -40,7 +40,8 @@ pub fn prelude() -> String {
             let _ = writeln!(text, "const {prefix}_{}: u32 = {}u;", field.to_uppercase(), offset / 4);
         }
     }
-    for (name, code) in [actions::CODES, choices::CODES, events::CODES, sensors::CODES].into_iter().flatten() {
+    let codes = [actions::CODES, choices::CODES, events::CODES, sensors::CODES];
+    for (name, code) in codes.into_iter().chain(events::EVENT_BITS).flatten() {
         let _ = writeln!(text, "const {name}: u32 = {code}u;");
     }
     let turns: Vec<String> = actions::ACTION_TURN.iter().map(|degrees| format!("{degrees:?}f")).collect();

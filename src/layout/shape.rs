@@ -1,6 +1,8 @@
 //! What a skill looks like to a kernel.
 
+use super::events::MAX_REGIONS;
 use super::sizes::{MAX_CHILDREN, MAX_GROUPS, MAX_STARTS};
+use super::world::Area;
 use bytemuck::{Pod, Zeroable};
 
 shared! {
@@ -40,6 +42,8 @@ shared! {
         tests_count: u32,
         /// Events that end a trial as achieved.
         ends: u32,
+        /// Regions whose events pay or end a trial.
+        regions: u32,
         /// Bits of the skills below this one, of any depth, that somebody's applicability depends on.
         watched: u32,
         /// Bits of the children that have an applicability threshold.
@@ -70,5 +74,7 @@ shared! {
         start_offset: [u32; MAX_STARTS],
         /// Cells of the region.
         start_count: [u32; MAX_STARTS],
+        /// The regions whose events pay or end a trial.
+        region: [Area; MAX_REGIONS],
     }
 }

@@ -28,6 +28,10 @@ shared! {
         y: f32,
         /// Degrees.
         heading: f32,
+        /// Before the last action, inches.
+        before_x: f32,
+        /// Before the last action, inches.
+        before_y: f32,
         /// Touching bumpers.
         bumpers: u32,
         /// Steps of the trial taken.
@@ -40,7 +44,7 @@ shared! {
         masks: u32,
         /// Last action, or `NO_ACTION`.
         action: u32,
-        /// Events of the last action.
+        /// Events of the last action, without those of regions: which these are depends on the skill.
         events: u32,
         /// Reward of the last action.
         earned: f32,

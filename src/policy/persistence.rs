@@ -47,11 +47,11 @@ impl Workgroup<'_> {
         }
         // An action ends by itself; a skill ends where its goal is achieved.
         let skill = own != 0 && code >= SKILL_CODE as u32;
-        let mut goal = 0;
+        let mut achieved = false;
         if skill {
-            goal = self.skills[code as usize - SKILL_CODE].ends;
+            let below = code - SKILL_CODE as u32;
+            achieved = (self.skill_events(below) & self.skills[below as usize].ends) != 0;
         }
-        let achieved = (self.agent.events & goal) != 0;
         let fresh = (applicable & !before & !own) != 0;
         let lost = self.params[s].interrupt == 1 && (applicable & own) == 0;
         let late = self.params[s].child_timeout > 0 && run_steps(self.agent.run[s]) >= self.params[s].child_timeout;

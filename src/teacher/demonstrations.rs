@@ -164,7 +164,7 @@ impl Teacher<'_> {
             if words > ELEMENTARY_STEP_WORDS {
                 group.write_high_level(0);
             }
-            let achieved = group.agent.events & self.plan.ends != 0;
+            let achieved = group.skill_events(0) & self.plan.ends != 0;
             if achieved || step >= self.params.max_steps {
                 group.set_choice(NO_CHILD, free);
                 group.write_step(words, 0, step as usize);

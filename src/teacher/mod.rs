@@ -5,5 +5,7 @@
 //! the robot with the same twins as the kernels, so what it plans for is what happens.
 
 pub mod demonstrations;
+pub mod grid;
 mod slip;
+mod task;
 pub mod value_iteration;

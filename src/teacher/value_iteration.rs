@@ -3,28 +3,16 @@
 //! The grid is 5 in x 5 in x 15 degrees. Actuator noise enters by a three-point quadrature; between grid
 //! poses values are interpolated, over the poses that a robot can take.
 
+use super::grid::{Between, HEADING_STEP, HEADINGS, PoseGrid};
 use super::slip::{SLIPS, slips};
-use crate::backend::cpu::lanes::contact::body_after;
-use crate::backend::cpu::lanes::draws::place_of;
-use crate::backend::cpu::lanes::sonar::{ranges, rays};
+use super::task::{Outcome, Task};
 use crate::config::plan::{Action, Event, Noise, SkillPlan};
 use crate::env::events::NOWHERE;
-use crate::env::motion::{BESIDE_LEFT, BESIDE_RIGHT, COLLISION, PASSED_DOOR};
-use crate::env::sonar::sonar_reading;
 use crate::env::workgroup::CohortData;
-use crate::layout::{Observation, RAYS};
-use crate::math::functions::sin_cos;
 use crate::world::{Pose, World};
-use bytemuck::Zeroable;
 use glam::Vec2;
 use rayon::prelude::*;
 
-/// Distance of grid points, inches. Ours; tests plan with others, at which moves end on grid points.
-pub const PITCH: f32 = 5.0;
-/// Headings of the grid.
-const HEADINGS: usize = 24;
-/// Degrees between them.
-const HEADING_STEP: f32 = 15.0;
 /// Sweeps stop when no value changes by more than this share of the largest reward.
 const TOLERANCE: f32 = 1.0e-5;
 /// A move that gets less far than this, inches, gets nowhere.
@@ -35,20 +23,13 @@ const MOST_SWEEPS: usize = 2_000;
 /// The solved task: how good every pose is, and what to do there.
 #[derive(Debug, Clone)]
 pub struct Planner {
-    pitch: f32,
-    columns: usize,
-    rows: usize,
-    free: Vec<bool>,
+    grid: PoseGrid,
+    task: Task,
     /// Values by room of origin; one entry where the room does not matter.
     values: Vec<Vec<f32>>,
     children: Vec<Action>,
-    reward: [f32; Event::ALL.len()],
-    ends: u32,
-    /// Least and greatest reading beside a wall, where the skill pays for it.
-    beside: Option<(u32, u32)>,
     discount: f32,
     backward_cost: f32,
-    collision_cost: f32,
     slips: [(f32, f32); SLIPS],
 }
 
@@ -70,41 +51,19 @@ pub struct Terms {
     pub pitch: f32,
 }
 
-/// What one action does from one pose under one slip of the actuators.
-#[derive(Debug, Clone, Copy)]
-struct Outcome {
-    pose: Pose,
-    reward: f32,
-    ended: bool,
-}
-
 impl Planner {
     /// Plans a skill. For one over skills it plans over all actions: the bound of every tree below it.
     pub fn new(world: &World, shared: &CohortData, skill: &SkillPlan, terms: &Terms) -> Self {
         let Terms { noise, beside, discount, backward_cost, collision_cost, pitch } = *terms;
-        let columns = (world.size.x / pitch) as usize + 1;
-        let rows = (world.size.y / pitch) as usize + 1;
-        let free = (0..columns * rows)
-            .map(|i| world.is_free(Vec2::new((i % columns) as f32 * pitch, (i / columns) as f32 * pitch)))
-            .collect();
-        let origins = if skill.goal & PASSED_DOOR == 0 && skill.params.reward[Event::PassedDoor as usize] == 0.0 {
-            1
-        } else {
-            world.rooms.len()
-        };
+        let task = Task::new(world, skill, beside, collision_cost);
+        let origins = if task.names(Event::PassedDoor) { world.rooms.len() } else { 1 };
         let mut planner = Self {
-            pitch,
-            columns,
-            rows,
-            free,
+            grid: PoseGrid::new(world, pitch),
+            task,
             values: Vec::new(),
             children: skill.actions(),
-            reward: skill.params.reward,
-            ends: skill.goal,
-            beside: pays_beside(skill).then_some(beside),
             discount,
             backward_cost,
-            collision_cost,
             slips: slips(&noise),
         };
         planner.values = (0..origins).map(|origin| planner.solve(shared, origin as u32)).collect();
@@ -113,7 +72,7 @@ impl Planner {
 
     /// Value of a pose, in reward units, for a trial that began in room `origin`.
     pub fn value(&self, origin: u32, pose: Pose) -> f32 {
-        self.interpolate(&self.values[self.origin_index(origin)], pose)
+        self.grid.interpolate(&self.values[self.origin_index(origin)], pose)
     }
 
     /// Position in the skill's children of the best one at a pose, for a trial that began in room `origin`.
@@ -131,7 +90,7 @@ impl Planner {
     /// Whether a move is blocked at once and ends nothing. Between grid poses the value of staying may come out above
     /// that of turning away, and the robot would push for ever.
     fn stuck(&self, shared: &CohortData, origin: u32, pose: Pose, action: Action) -> bool {
-        let outcome = self.outcome(shared, origin, pose, action, 1.0);
+        let outcome = self.task.outcome(shared, origin, pose, action, 1.0);
         let way = Vec2::new(outcome.pose.x - pose.x, outcome.pose.y - pose.y);
         action.travel() != 0.0 && !outcome.ended && way.length() < STUCK
     }
@@ -144,8 +103,8 @@ impl Planner {
             .slips
             .iter()
             .map(|(slip, weight)| {
-                let outcome = self.outcome(shared, origin, pose, action, *slip);
-                let after = if outcome.ended { 0.0 } else { self.interpolate(values, outcome.pose) };
+                let outcome = self.task.outcome(shared, origin, pose, action, *slip);
+                let after = if outcome.ended { 0.0 } else { self.grid.interpolate(values, outcome.pose) };
                 weight * (outcome.reward + self.discount * after)
             })
             .sum();
@@ -155,16 +114,15 @@ impl Planner {
     /// The words that stand in for a skill's nets (see [`crate::policy::planner_table`]): at every grid pose the best child
     /// and its value times `scale`. A pose that no robot can take has those of the nearest one that it can.
     pub fn table(&self, shared: &CohortData, scale: f32) -> Vec<u32> {
-        let mut words =
-            vec![self.columns as u32, self.rows as u32, self.values.len() as u32, (1.0 / self.pitch).to_bits()];
+        let PoseGrid { pitch, columns, rows, .. } = self.grid;
+        let mut words = vec![columns as u32, rows as u32, self.values.len() as u32, (1.0 / pitch).to_bits()];
         for origin in 0..self.values.len() as u32 {
-            let entries: Vec<[u32; HEADINGS]> = (0..self.free.len())
+            let entries: Vec<[u32; HEADINGS]> = (0..self.grid.free.len())
                 .into_par_iter()
                 .map(|point| {
-                    let at = self.nearest_free(point);
-                    let (x, y) = ((at % self.columns) as f32 * self.pitch, (at / self.columns) as f32 * self.pitch);
+                    let at = self.grid.nearest_free(point);
                     std::array::from_fn(|heading| {
-                        let pose = Pose { x, y, heading: heading as f32 * HEADING_STEP };
+                        let pose = self.grid.pose(at, heading);
                         let value = self.value(origin, pose) * scale;
                         (value.to_bits() & 0xffff_fff8) | self.choose(shared, origin, pose) as u32
                     })
@@ -175,73 +133,23 @@ impl Planner {
         words
     }
 
-    fn nearest_free(&self, point: usize) -> usize {
-        let place = |point: usize| ((point % self.columns) as i64, (point / self.columns) as i64);
-        let (x, y) = place(point);
-        let distance = |other: &usize| {
-            let (ox, oy) = place(*other);
-            (ox - x) * (ox - x) + (oy - y) * (oy - y)
-        };
-        (0..self.free.len()).filter(|other| self.free[*other]).min_by_key(distance).unwrap_or(point)
-    }
-
     fn origin_index(&self, origin: u32) -> usize {
         if (origin as usize) < self.values.len() { origin as usize } else { 0 }
     }
 
-    fn outcome(&self, shared: &CohortData, origin: u32, pose: Pose, action: Action, slip: f32) -> Outcome {
-        let moved = body_after(&shared.floor, pose.x, pose.y, pose.heading, action as u32, slip);
-        let mut events = moved.events | shared.floor.plan.passed_door(origin, moved.x, moved.y);
-        if let Some((near, far)) = self.beside
-            && action == Action::Forward
-        {
-            let seen = noiseless_sonar(shared, moved.x, moved.y, moved.heading);
-            events |= seen.following_wall(near, far, action as u32, events);
-        }
-        let paid: f32 = (0..Event::ALL.len()).filter(|i| (events >> i) & 1 == 1).map(|i| self.reward[i]).sum();
-        let reward = if events & COLLISION == 0 { paid } else { paid - self.collision_cost };
-        let pose = Pose { x: moved.x, y: moved.y, heading: moved.heading };
-        Outcome { pose, reward, ended: events & self.ends != 0 }
-    }
-
     /// Values of all grid poses for trials that began in room `origin`.
     fn solve(&self, shared: &CohortData, origin: u32) -> Vec<f32> {
-        let moves: Vec<Action> = self.children.iter().copied().filter(|a| a.travel() != 0.0).collect();
-        let turns: Vec<Action> = self.children.iter().copied().filter(|a| a.turn() != 0.0).collect();
-        let points: Vec<usize> = (0..self.free.len()).filter(|point| self.free[*point]).collect();
-        // A move keeps the heading, so its outcome blends at most four points of the same heading.
-        let blends: Vec<Vec<Blend>> = points
-            .par_iter()
-            .map(|point| {
-                let x = (point % self.columns) as f32 * self.pitch;
-                let y = (point / self.columns) as f32 * self.pitch;
-                let mut blends = Vec::with_capacity(HEADINGS * moves.len() * self.slips.len());
-                for heading in 0..HEADINGS {
-                    let pose = Pose { x, y, heading: heading as f32 * HEADING_STEP };
-                    for action in &moves {
-                        for (slip, _) in self.slips {
-                            let outcome = self.outcome(shared, origin, pose, *action, slip);
-                            blends.push(self.blend(&outcome));
-                        }
-                    }
-                }
-                blends
-            })
-            .collect();
-        // A turn keeps the point, and takes each heading to the same place between headings everywhere.
-        let turned: Vec<Between> = (0..HEADINGS)
-            .flat_map(|heading| turns.iter().map(move |action| (heading, action)))
-            .flat_map(|(heading, action)| {
-                self.slips.map(|(slip, _)| Between::headings(heading as f32 + action.turn() * slip / HEADING_STEP))
-            })
-            .collect();
-        let scale = self.reward.iter().fold(0.0_f32, |most, amount| most.max(amount.abs())).max(1.0e-6);
-        let mut values = vec![0.0; self.free.len() * HEADINGS];
+        let points: Vec<usize> = (0..self.grid.free.len()).filter(|point| self.grid.free[*point]).collect();
+        let successors = self.successors(shared, origin, &points);
+        let scale = self.task.reward.iter().fold(0.0_f32, |most, amount| most.max(amount.abs())).max(1.0e-6);
+        let mut values = vec![0.0; self.grid.free.len() * HEADINGS];
         let mut fresh = vec![[0.0; HEADINGS]; points.len()];
         for _sweep in 0..MOST_SWEEPS {
-            fresh.par_iter_mut().zip(&points).zip(&blends).for_each(|((fresh, point), blends)| {
+            fresh.par_iter_mut().enumerate().for_each(|(number, fresh)| {
+                let own = &values[points[number] * HEADINGS..][..HEADINGS];
                 for (heading, fresh) in fresh.iter_mut().enumerate() {
-                    *fresh = self.backup(&values, *point, heading, &moves, blends, &turned);
+                    let moved = self.best_move(&successors, &values, number, heading);
+                    *fresh = moved.max(self.best_turn(&successors, own, number, heading));
                 }
             });
             let mut change = 0.0_f32;
@@ -259,35 +167,67 @@ impl Planner {
         values
     }
 
-    fn backup(
-        &self,
-        values: &[f32],
-        point: usize,
-        heading: usize,
-        moves: &[Action],
-        blends: &[Blend],
-        turned: &[Between],
-    ) -> f32 {
-        let mut best = f32::NEG_INFINITY;
-        let per_heading = moves.len() * self.slips.len();
-        for (number, action) in moves.iter().enumerate() {
-            let first = heading * per_heading + number * self.slips.len();
+    /// What the actions lead to from every heading on these points.
+    fn successors(&self, shared: &CohortData, origin: u32, points: &[usize]) -> Successors {
+        let moves: Vec<Action> = self.children.iter().copied().filter(|a| a.travel() != 0.0).collect();
+        let turns: Vec<Action> = self.children.iter().copied().filter(|a| a.turn() != 0.0).collect();
+        let outcomes = |actions: &[Action]| -> Vec<Vec<Outcome>> {
+            let slipped = |action: &Action| self.slips.map(|(slip, _)| (*action, slip));
+            let trials: Vec<(Action, f32)> = actions.iter().flat_map(slipped).collect();
+            let of_pose = |pose: Pose| {
+                trials.iter().map(move |(action, slip)| self.task.outcome(shared, origin, pose, *action, *slip))
+            };
+            let of_point = |point: &usize| {
+                (0..HEADINGS).map(|heading| self.grid.pose(*point, heading)).flat_map(of_pose).collect()
+            };
+            points.par_iter().map(of_point).collect()
+        };
+        let blends = outcomes(&moves)
+            .iter()
+            .map(|outcomes| outcomes.iter().map(|outcome| self.blend(outcome)).collect())
+            .collect();
+        let turned = (0..HEADINGS)
+            .flat_map(|heading| turns.iter().map(move |action| (heading, action)))
+            .flat_map(|(heading, action)| {
+                self.slips.map(|(slip, _)| Between::headings(heading as f32 + action.turn() * slip / HEADING_STEP))
+            })
+            .collect();
+        let turn_outcomes = self.task.pays_turns().then(|| outcomes(&turns));
+        Successors { moves, blends, turned, turn_outcomes }
+    }
+
+    fn best_move(&self, successors: &Successors, values: &[f32], number: usize, heading: usize) -> f32 {
+        let Successors { moves, blends, .. } = successors;
+        let of_heading = blends[number].as_chunks::<SLIPS>().0[heading * moves.len()..].iter();
+        let worth = |(action, blends): (&Action, &[Blend; SLIPS])| {
             let mut worth = if *action == Action::Backward { -self.backward_cost } else { 0.0 };
-            for (blend, (_, weight)) in blends[first..first + self.slips.len()].iter().zip(&self.slips) {
+            for (blend, (_, weight)) in blends.iter().zip(&self.slips) {
                 let mut after = 0.0;
                 for (neighbour, share) in blend.points.iter().zip(&blend.shares) {
                     after += share * values[*neighbour as usize * HEADINGS + heading];
                 }
                 worth += weight * (blend.reward + self.discount * after);
             }
-            best = best.max(worth);
-        }
-        let own = &values[point * HEADINGS..(point + 1) * HEADINGS];
-        let per_heading = turned.len() / HEADINGS;
-        for slipped in turned[heading * per_heading..(heading + 1) * per_heading].as_chunks::<SLIPS>().0 {
+            worth
+        };
+        moves.iter().zip(of_heading).map(worth).fold(f32::NEG_INFINITY, f32::max)
+    }
+
+    /// `own` are the values of the point's headings.
+    fn best_turn(&self, successors: &Successors, own: &[f32], number: usize, heading: usize) -> f32 {
+        let per_heading = successors.turned.len() / HEADINGS;
+        let mut best = f32::NEG_INFINITY;
+        for first in (heading * per_heading..(heading + 1) * per_heading).step_by(SLIPS) {
             let mut worth = 0.0;
-            for (between, (_, weight)) in slipped.iter().zip(&self.slips) {
-                worth += weight * self.discount * between.of(own);
+            for (slip, (_, weight)) in self.slips.iter().enumerate() {
+                let after = successors.turned[first + slip].of(own);
+                worth += match &successors.turn_outcomes {
+                    None => weight * self.discount * after,
+                    Some(outcomes) => {
+                        let Outcome { reward, ended, .. } = outcomes[number][first + slip];
+                        weight * (reward + if ended { 0.0 } else { self.discount * after })
+                    }
+                };
             }
             best = best.max(worth);
         }
@@ -298,49 +238,25 @@ impl Planner {
     fn blend(&self, outcome: &Outcome) -> Blend {
         let mut blend = Blend { points: [0; 4], shares: [0.0; 4], reward: outcome.reward };
         if !outcome.ended {
-            for (slot, (point, share)) in self.corners(outcome.pose).into_iter().enumerate() {
+            for (slot, (point, share)) in self.grid.corners(outcome.pose).into_iter().enumerate() {
                 blend.points[slot] = point as u32;
                 blend.shares[slot] = share;
             }
         }
         blend
     }
+}
 
-    /// The four grid points round a pose with their shares; points that no robot can take have none.
-    fn corners(&self, pose: Pose) -> [(usize, f32); 4] {
-        let column = ((pose.x / self.pitch) as usize).min(self.columns - 2);
-        let row = ((pose.y / self.pitch) as usize).min(self.rows - 2);
-        let dx = pose.x / self.pitch - column as f32;
-        let dy = pose.y / self.pitch - row as f32;
-        let first = row * self.columns + column;
-        let mut corners = [
-            (first, (1.0 - dx) * (1.0 - dy)),
-            (first + 1, dx * (1.0 - dy)),
-            (first + self.columns, (1.0 - dx) * dy),
-            (first + self.columns + 1, dx * dy),
-        ];
-        let mut total = 0.0;
-        for (point, share) in &mut corners {
-            // A robot that touches a wall stands between points of which some lie too close to it.
-            *share = if self.free[*point] { share.max(1.0e-6) } else { 0.0 };
-            total += *share;
-        }
-        if total > 0.0 {
-            for (_, share) in &mut corners {
-                *share /= total;
-            }
-        }
-        corners
-    }
-
-    fn interpolate(&self, values: &[f32], pose: Pose) -> f32 {
-        let between = Between::headings(pose.heading / HEADING_STEP);
-        self.corners(pose)
-            .into_iter()
-            .filter(|(_, share)| *share > 0.0)
-            .map(|(point, share)| share * between.of(&values[point * HEADINGS..][..HEADINGS]))
-            .sum()
-    }
+/// What the actions lead to, worked out once for all sweeps. Outcomes of a point go by heading, action and slip.
+#[derive(Debug)]
+struct Successors {
+    moves: Vec<Action>,
+    /// By number of the point. A move keeps the heading, so its outcome blends at most four points of the same heading.
+    blends: Vec<Vec<Blend>>,
+    /// A turn keeps the point, and takes each heading to the same place between headings everywhere.
+    turned: Vec<Between>,
+    /// By number of the point, where turns earn something.
+    turn_outcomes: Option<Vec<Vec<Outcome>>>,
 }
 
 /// Grid points that an outcome blends, their shares, and its reward.
@@ -349,46 +265,6 @@ struct Blend {
     points: [u32; 4],
     shares: [f32; 4],
     reward: f32,
-}
-
-/// A place between two of a grid point's headings.
-#[derive(Debug, Clone, Copy)]
-struct Between {
-    first: usize,
-    second: usize,
-    /// Share of the second.
-    part: f32,
-}
-
-impl Between {
-    /// `turn` counts headings and may lie beyond them.
-    fn headings(turn: f32) -> Self {
-        let low = turn.floor();
-        let first = (low as i32).rem_euclid(HEADINGS as i32) as usize;
-        Self { first, second: (first + 1) % HEADINGS, part: turn - low }
-    }
-
-    /// The blend of the values of a point's headings.
-    fn of(self, values: &[f32]) -> f32 {
-        values[self.first] * (1.0 - self.part) + values[self.second] * self.part
-    }
-}
-
-fn pays_beside(skill: &SkillPlan) -> bool {
-    let paid = |event: Event| skill.params.reward[event as usize] != 0.0;
-    paid(Event::BesideRight) || paid(Event::BesideLeft) || skill.goal & (BESIDE_RIGHT | BESIDE_LEFT) != 0
-}
-
-/// What the sonar shows at a pose, without noise; the other sensors show nothing.
-fn noiseless_sonar(shared: &CohortData, x: f32, y: f32, heading: f32) -> Observation {
-    let (sine, cosine) = sin_cos(heading);
-    let (ux, uy) = rays(cosine, sine);
-    let range = ranges(&shared.floor, x, y, &ux, &uy);
-    let mut seen = Observation::zeroed();
-    for ray in 0..RAYS {
-        seen.sonar[ray / 4] |= sonar_reading(range[place_of(ray)], 1.0) << (8 * (ray % 4));
-    }
-    seen
 }
 
 /// Room in which a trial that begins here begins.

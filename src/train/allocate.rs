@@ -144,6 +144,13 @@ fn plan_of(skill: &SkillPlan, world: &World, tables: &mut Tables) -> Result<Skil
     plan.groups = skill.inputs.len() as u32;
     plan.starts = skill.starts.len() as u32;
     plan.ends = skill.goal;
+    plan.regions = skill.regions.len() as u32;
+    for (area, region) in plan.region.iter_mut().zip(&skill.regions) {
+        *area = world.region_area(region).map(Into::into).ok_or_else(|| {
+            let message = format!("the world `{}` has no room or rectangle `{region}`", world.name);
+            refuse(message, "name another region")
+        })?;
+    }
     let (mut first, mut bits) = (0, 0_u64);
     for (group, input) in skill.inputs.iter().enumerate() {
         plan.group_first[group] = first;

@@ -37,10 +37,10 @@ keys! {
     DOOR_WIDTH = "doors[].width", None, Number(Bounds::above(0.0, 2000.0)), Ours, "Free width; more than the robot's 24 inches.";
     CHARGER_BOX = "charger.box", None, Other(LIST, "[x1, y1, x2, y2]"), Paper, "The battery charger, a solid box.";
     CHARGER_TOLERANCE = "charger.tolerance", Some("30.0"), Number(Bounds::above(0.0, 180.0)), Ours, "Largest angle between the heading and the contact point that still connects.";
-    LIGHT_AT = "light.at", None, Other(LIST, "[x, y]"), Paper, "Where the light stands.";
+    LIGHT_AT = "light.at", None, Other(LIST, "[x, y]"), Paper, "Where the light stands. From closer than an inch it is not seen, so it should stand where no robot can.";
     LIGHT_RANGE = "light.range", None, Number(REACH), Ours, "Distance at which a bearing that points at it is just lit.";
     LIGHT_AREA = "light.area", Some("140.0"), Number(REACH), Ours, "Radius of the region light-area, within which the light must also be in line of sight.";
     PLACE = "places.*", None, Other(LIST, "[x, y, heading]"), Ours, "A named pose, at which reports show what the robot senses; heading 0 is east, counter-clockwise.";
-    REGION_NAME = "regions[].name", None, Other(TEXT, "letters, digits, - and _"), Ours, "Name of a region of starts, besides anywhere, light-area, near-doors and room:NAME.";
+    REGION_NAME = "regions[].name", None, Other(TEXT, "letters, digits, - and _"), Ours, "Name of a region of starts and of events, besides anywhere, light-area, near-doors and room:NAME.";
     REGION_BOX = "regions[].box", None, Other(LIST, "[x1, y1, x2, y2]"), Ours, "Its extent.";
 }

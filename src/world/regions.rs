@@ -3,7 +3,7 @@
 //! A start pose is drawn by picking a cell and a point in it, so a robot must be free anywhere in the cell. All
 //! regions keep to the rooms: a robot that started in a doorway would have no first room to leave.
 
-use super::{ROBOT_RADIUS, World};
+use super::{ROBOT_RADIUS, Rect, World};
 use glam::Vec2;
 use std::f32::consts::{FRAC_1_SQRT_2, SQRT_2};
 
@@ -15,6 +15,8 @@ pub const ANYWHERE: &str = "anywhere";
 pub const LIGHT_AREA: &str = "light-area";
 /// The region from which a door can be made out.
 pub const NEAR_DOORS: &str = "near-doors";
+/// What stands before the name of a room that is a region.
+const ROOM: &str = "room:";
 /// Regions that have these names in every world; besides, every room `A` is the region `room:A`.
 pub const BUILT_IN: [&str; 3] = [ANYWHERE, LIGHT_AREA, NEAR_DOORS];
 
@@ -29,7 +31,7 @@ impl World {
         let mut names = vec![ANYWHERE.to_owned()];
         names.extend(self.light.iter().map(|_| LIGHT_AREA.to_owned()));
         names.extend((!self.doors.is_empty()).then(|| NEAR_DOORS.to_owned()));
-        names.extend(self.rooms.iter().map(|room| format!("room:{}", room.name)));
+        names.extend(self.rooms.iter().map(|room| format!("{ROOM}{}", room.name)));
         names.extend(self.regions.iter().map(|(name, _)| name.clone()));
         names
     }
@@ -43,6 +45,19 @@ impl World {
     /// Whether a region has no cell, which is found out sooner than all its cells; none for an unknown name.
     pub fn region_is_empty(&self, name: &str) -> Option<bool> {
         self.cells(name).map(|mut cells| cells.next().is_none())
+    }
+
+    /// The rectangle of a room, `room:A`, or of a region that the file names; none for a region of another shape.
+    pub fn region_area(&self, name: &str) -> Option<Rect> {
+        match name.strip_prefix(ROOM) {
+            Some(wanted) => self.rooms.iter().find(|room| room.name == wanted).map(|room| room.area),
+            None => self.regions.iter().find(|(known, _)| known == name).map(|(_, area)| *area),
+        }
+    }
+
+    /// Names of the regions that are rectangles.
+    pub fn rectangular_regions(&self) -> Vec<String> {
+        self.region_names().into_iter().filter(|name| self.region_area(name).is_some()).collect()
     }
 
     fn cells(&self, name: &str) -> Option<impl Iterator<Item = u32>> {
@@ -60,7 +75,9 @@ impl World {
     }
 
     fn in_region(&self, name: &str, point: Vec2) -> bool {
-        let Some(room) = self.room_of(point) else { return false };
+        if self.room_of(point).is_none() {
+            return false;
+        }
         match name {
             ANYWHERE => true,
             LIGHT_AREA => {
@@ -72,10 +89,7 @@ impl World {
                 let reach = if ahead { NEAR_AHEAD } else { NEAR };
                 way.length() <= reach && self.sees(point, door.centre)
             }),
-            _ => match name.strip_prefix("room:") {
-                Some(wanted) => self.rooms[room].name == wanted,
-                None => self.regions.iter().any(|(known, area)| known == name && area.contains(point)),
-            },
+            _ => self.region_area(name).is_some_and(|area| area.contains(point)),
         }
     }
 }

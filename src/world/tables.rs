@@ -2,7 +2,7 @@
 
 use super::geometry::{distance, touch};
 use super::solids::sides;
-use super::{Door, ROBOT_RADIUS, WallSegment, World};
+use super::{Door, ROBOT_RADIUS, Rect, WallSegment, World};
 use crate::layout::{self, Area, WorldUniform};
 use bytemuck::Zeroable;
 use glam::{DVec2, Vec2};
@@ -126,13 +126,18 @@ fn plan(world: &World) -> WorldUniform {
         *to = segment(from);
     }
     for (to, room) in plan.room.iter_mut().zip(&world.rooms) {
-        let (min, max) = (room.area.min, room.area.max);
-        *to = Area { x0: min.x, y0: min.y, x1: max.x, y1: max.y };
+        *to = room.area.into();
     }
     for (to, from) in plan.doorway.iter_mut().zip(&world.doors) {
         *to = doorway(from);
     }
     plan
+}
+
+impl From<Rect> for Area {
+    fn from(Rect { min, max }: Rect) -> Self {
+        Self { x0: min.x, y0: min.y, x1: max.x, y1: max.y }
+    }
 }
 
 fn segment(segment: &WallSegment) -> layout::Segment {

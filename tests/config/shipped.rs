@@ -1,6 +1,7 @@
 //! What the shipped files say, layers, seeds, the resolved text.
 
 use super::plans::{FILE, WORLD, attempt, attempt_files, read_again, with};
+use super::rewards::rewards;
 use skilltree::config::plan::{Action, ArmPlan, Child, Event, Input, Plan};
 use skilltree::config::{ConfigError, Overrides, Place, keys, load, parse_seeds};
 use skilltree::layout::HyperParams;
@@ -47,7 +48,7 @@ fn docking_is_as_published() {
         assert_eq!(dock.name, "dock");
         assert_eq!(dock.inputs, [Input::Sonar { scale: 60.0 }, Input::Light, Input::Bumpers]);
         assert_eq!(dock.children, Action::ALL.map(Child::Action));
-        assert_eq!(dock.params.reward, [100.0, -10.0, 0.0, 0.0, 0.0]);
+        assert_eq!(dock.params.reward, rewards(&[(Event::Docked, 100.0), (Event::Collision, -10.0)]));
         assert_eq!(dock.eval_at, plan.evaluate.at);
         assert_eq!(dock.starts, [("light-area".to_owned(), 0.8), ("anywhere".to_owned(), 0.2)]);
         assert_eq!((dock.eval_starts.as_str(), dock.goal), ("light-area", Event::Docked.bit()));
@@ -113,7 +114,7 @@ fn every_default_is_read_and_in_range() {
     // The defaults are the taught Adam arm of docking.
     let (own, taught) = (plan.arms[0].skills[0].params, docking(&[]).arms[0].skills[0].params);
     assert_eq!(own, HyperParams { lessons: own.lessons, reward: own.reward, ..taught });
-    assert_eq!((own.lessons, own.reward), (0, [1.0, 0.0, 0.0, 0.0, 0.0]));
+    assert_eq!((own.lessons, own.reward), (0, rewards(&[(Event::Docked, 1.0)])));
     assert_eq!(plan.arms[0].noise, docking(&[]).arms[0].noise);
     assert_eq!((plan.arms[0].teacher, plan.evaluate), (docking(&[]).arms[0].teacher, docking(&[]).evaluate));
     for key in keys::all() {
@@ -167,7 +168,7 @@ fn layers_lie_over_one_another() {
     // Rewards merge, start shares are replaced.
     let plan =
         docking(&["skill.dock.reward.collision=0", "skill.dock.starts=light-area", "skill.dock.eval_starts=room:A"]);
-    assert_eq!(plan.arms[0].skills[0].params.reward, [100.0, 0.0, 0.0, 0.0, 0.0]);
+    assert_eq!(plan.arms[0].skills[0].params.reward, rewards(&[(Event::Docked, 100.0)]));
     assert_eq!(plan.arms[0].skills[0].starts, [("light-area".to_owned(), 1.0)]);
     assert_eq!(plan.arms[0].skills[0].eval_starts, "room:A");
     let plan = docking(&["skill.dock.starts={light-area=0.5, near-doors=0.5}"]);

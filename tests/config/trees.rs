@@ -1,6 +1,7 @@
 //! Configs of trees: which skills an arm trains, what they see and choose, worlds and alterations.
 
 use super::plans::{attempt_files, read_again, with};
+use super::rewards::rewards;
 use skilltree::config::plan::{Action, Alteration, ArmPlan, Child, Event, Input, Noise, Plan, SkillPlan, Threshold};
 use skilltree::config::{ConfigError, Overrides, load};
 use skilltree::layout::HyperParams;
@@ -147,7 +148,9 @@ fn an_arm_trains_the_tree_of_its_root() {
 fn a_mirror_image_takes_everything_from_its_skill() {
     let plan = relatives(&[]);
     let (left, right) = (skill(&plan, "full", "left"), skill(&plan, "full", "right"));
-    assert_eq!((right.params.reward, right.mirror), ([0.0, -1.0, 0.0, 3.0, -2.0], None));
+    let pays =
+        |right, left| rewards(&[(Event::Collision, -1.0), (Event::BesideRight, right), (Event::BesideLeft, left)]);
+    assert_eq!((right.params.reward, right.mirror), (pays(3.0, -2.0), None));
     assert_eq!((right.eval_at.as_slice(), left.eval_at.as_slice()), (&[0, 10, 20][..], &[0][..]));
     let turned = [
         Action::TurnRight15,
@@ -161,7 +164,7 @@ fn a_mirror_image_takes_everything_from_its_skill() {
         name: "left".to_owned(),
         children: turned.map(Child::Action).to_vec(),
         mirror: Some(0),
-        params: HyperParams { reward: [0.0, -1.0, 0.0, -2.0, 3.0], lessons: 0, trials: 0, ..right.params },
+        params: HyperParams { reward: pays(-2.0, 3.0), lessons: 0, trials: 0, ..right.params },
         goal: Event::BesideLeft.bit() | Event::PassedDoor.bit(),
         eval_at: vec![0],
         ..right.clone()

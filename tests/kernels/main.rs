@@ -14,6 +14,8 @@ mod observations;
 mod oracle;
 mod physics;
 mod random;
+#[path = "../support/rewards.rs"]
+mod rewards;
 mod teacher;
 #[path = "../support/work.rs"]
 mod work;

@@ -128,7 +128,7 @@ pub(crate) fn office(name: &str) -> (World, Written) {
         size: pair(&plain["size"]),
         walls: fours("walls"),
         boxes: fours("boxes"),
-        charger: Some(four(&plain["charger"]["box"])),
+        charger: plain.get("charger").map(|charger| four(&charger["box"])),
         light: Some((pair(&plain["light"]["at"]), number(&plain["light"]["range"]))),
     };
     (world, written)

@@ -4,7 +4,9 @@ use super::loop_limit::SAFE_TURNS;
 use crate::env::events::{SIDE_FIRST, SIDE_LAST};
 use crate::env::workgroup::CohortData;
 use crate::layout::sensors::{GROUP_APPLICABLE, GROUP_VALUES};
-use crate::layout::{ELEMENTARY_STEP_WORDS, EVENTS, LANES, MAX_CHILDREN, SKILL_CODE, SkillShape, WorldUniform};
+use crate::layout::{
+    ELEMENTARY_STEP_WORDS, EVENTS, LANES, MAX_CHILDREN, REGION_EVENTS, SKILL_CODE, SkillShape, WorldUniform,
+};
 use std::time::Duration;
 
 /// Duration that dispatches aim at.
@@ -120,10 +122,13 @@ fn act_turns(shared: &CohortData, root: usize) -> u32 {
     let world = &shared.floor.plan;
     let plan = &shared.skills[root];
     let rooms = turns(world.rooms, 0);
-    let sense = step_turns(shared) + turns((SIDE_LAST - SIDE_FIRST) as u32 + 1, 0) + turns(EVENTS as u32, 0);
+    let paid = EVENTS as u32 + plan.regions * REGION_EVENTS as u32;
+    // Regions are asked for the reward and for the goal.
+    let score = turns(paid, 0) + 2 * turns(plan.regions, 0);
+    let sense = step_turns(shared) + turns((SIDE_LAST - SIDE_FIRST) as u32 + 1, 0) + score;
     let watched = shared.skills[..root].iter().enumerate().filter(|(n, _)| (plan.watched >> n) & 1 == 1);
     let watch = watched.map(|(_, plan)| think_turns(plan, world) + turns(plan.children, 0)).sum::<u32>();
-    let choose = think_turns(plan, world) + choice_turns(plan);
+    let choose = think_turns(plan, world) + choice_turns(plan) + child_goal_turns(shared, plan);
     let execute = rooms + turns(world.doors, 0) + rooms;
     sense
         + turns(root as u32, 0)
@@ -143,9 +148,15 @@ fn way_turns(shared: &CohortData, plan: &SkillShape, watched: u32) -> u32 {
         let known = (watched >> n) & 1 == 1;
         let think =
             if known { extend_turns(below, &shared.floor.plan) } else { think_turns(below, &shared.floor.plan) };
-        1 + think + choice_turns(below) + way_turns(shared, below, watched)
+        1 + think + choice_turns(below) + child_goal_turns(shared, below) + way_turns(shared, below, watched)
     });
     turns.max().unwrap_or(0)
+}
+
+/// Whether the child that is being carried out has achieved its goal.
+fn child_goal_turns(shared: &CohortData, plan: &SkillShape) -> u32 {
+    let skills = plan.child[..plan.children as usize].iter().filter_map(|code| code.checked_sub(SKILL_CODE as u32));
+    skills.map(|n| turns(shared.skills[n as usize].regions, 0)).max().unwrap_or(0)
 }
 
 /// A transition of skill `plan`: the draws of the lesson, of its number and of the step, the children in the mirror,

@@ -26,6 +26,10 @@ pub struct SkillPlan {
     pub eval_at: Vec<u32>,
     /// Bits of the events (see [`crate::layout::Event::bit`]) that end a trial as achieved.
     pub goal: u32,
+    /// Regions whose events the reward and the goal name; their places are those of [`RegionEvent::number`].
+    ///
+    /// [`RegionEvent::number`]: crate::layout::RegionEvent::number
+    pub regions: Vec<String>,
     /// Every number with which it is learned and carried out; all but the seeds, which each learner has of its own.
     #[serde(serialize_with = "super::as_bytes")]
     pub params: HyperParams,

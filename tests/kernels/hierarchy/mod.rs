@@ -10,6 +10,7 @@ mod mirrors;
 mod persistence;
 mod planned;
 mod pretraining;
+mod region_goals;
 mod remembered_trials;
 mod shared_nets;
 mod stopped_runs;

@@ -3,6 +3,7 @@
 
 mod bumpers;
 mod docking;
+mod events;
 mod light;
 mod lists;
 mod moves;

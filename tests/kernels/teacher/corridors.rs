@@ -2,7 +2,8 @@
 //! grid the robot's moves keep to.
 
 use super::super::configs::shipped;
-use skilltree::config::plan::{Action, Child, Noise, SkillPlan};
+use super::super::rewards::rewards;
+use skilltree::config::plan::{Action, Child, Event, Noise, RegionEvent, SkillPlan};
 use skilltree::env::motion::{DOCKED, PASSED_DOOR};
 use skilltree::env::workgroup::CohortData;
 use skilltree::layout::choices::{NOISE_GAUSSIAN, NOISE_UNIFORM};
@@ -31,6 +32,11 @@ fn turned_box(b: [f64; 4], quarters: u32) -> [f64; 4] {
 /// A corridor along y = 24 with an inch of play on either side of the robot: only along it can it move 12 in. At its
 /// west end the charger's front, at its east end a wall 18 in from the last grid point. Then turned by quarters.
 fn corridor(charger_front: f64, quarters: u32) -> World {
+    corridor_with(charger_front, quarters, "")
+}
+
+/// The same with more in its file.
+fn corridor_with(charger_front: f64, quarters: u32, more: &str) -> World {
     let walls = [[0.0, 11.0, SIDE, 11.0], [0.0, 37.0, SIDE, 37.0], [234.0, 11.0, 234.0, 37.0]];
     let walls = walls.map(|w| turned_box(w, quarters));
     let rooms = [("A", [0.0, 11.0, 116.0, 37.0]), ("B", [124.0, 11.0, SIDE, 37.0]), ("C", [0.0, 60.0, SIDE, SIDE])];
@@ -41,7 +47,7 @@ fn corridor(charger_front: f64, quarters: u32) -> World {
     let centre = turned([120.0, 24.0], quarters);
     let _ = writeln!(text, "[[doors]]\nname = \"gap\"\nrooms = [\"A\", \"B\"]\ncentre = {centre:?}\nwidth = 26");
     let charger = turned_box([0.0, 12.0, charger_front, 36.0], quarters);
-    let _ = writeln!(text, "[charger]\nbox = {charger:?}\ntolerance = 20");
+    let _ = writeln!(text, "[charger]\nbox = {charger:?}\ntolerance = 20\n{more}");
     parse(&text, Path::new("corridor.toml")).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
@@ -54,7 +60,10 @@ fn on_line(x: f64, heading: f64, quarters: u32) -> Pose {
 
 fn docking() -> SkillPlan {
     let skill = shipped("configs/docking.toml", &[]).arms[0].skills[0].clone();
-    assert_eq!((skill.params.reward, skill.goal), ([100.0, -10.0, 0.0, 0.0, 0.0], DOCKED));
+    assert_eq!(
+        (skill.params.reward, skill.goal),
+        (rewards(&[(Event::Docked, 100.0), (Event::Collision, -10.0)]), DOCKED)
+    );
     skill
 }
 
@@ -123,7 +132,21 @@ fn close(found: f32, expected: f64, what: impl Fn() -> String) {
 
 /// Checks a planner against the shortest paths: values on grid poses and between them, and every choice.
 fn check_paths(planner: &Planner, floor: &CohortData, children: &[Action], found: &[(State, u32)], quarters: u32) {
-    let worth = |distance: u32| 100.0 * f64::from(DISCOUNT).powi(distance as i32 - 1);
+    check_dear_paths(planner, floor, children, found, quarters, 0.0);
+}
+
+/// The same where every step costs something.
+fn check_dear_paths(
+    planner: &Planner,
+    floor: &CohortData,
+    children: &[Action],
+    found: &[(State, u32)],
+    quarters: u32,
+    step_cost: f64,
+) {
+    let later = |steps: u32| f64::from(DISCOUNT).powi(steps as i32);
+    let worth =
+        |distance: u32| (0..distance).map(|step| -step_cost * later(step)).sum::<f64>() + 100.0 * later(distance - 1);
     let distance = |state: State| found.iter().find(|(known, _)| *known == state).map(|(_, distance)| *distance);
     let inches = |place: i32| f64::from(place * MOVE);
     for ((place, heading), steps) in found.iter().copied() {
@@ -181,7 +204,7 @@ fn docking_values_are_those_of_the_shortest_paths() {
 #[test]
 fn door_values_are_those_of_the_shortest_paths() {
     let mut skill = docking();
-    skill.params.reward = [0.0, -10.0, 100.0, 0.0, 0.0];
+    skill.params.reward = rewards(&[(Event::Collision, -10.0), (Event::PassedDoor, 100.0)]);
     skill.goal = PASSED_DOOR;
     // Fewer children, in another order, for good measure.
     let children = [Action::Backward, Action::TurnLeft60, Action::TurnLeft15, Action::Forward];
@@ -225,5 +248,49 @@ fn values_under_noise_are_those_of_the_recursion() {
             close(planner.value(0, pose), value, || format!("noise of kind {kind} at {x} in"));
         }
         assert!((exact[0] - 100.0).abs() < 1.0e-9 && exact[29] < 30.0);
+    }
+}
+
+/// Into a region at the corridor's far end, where every step costs 3, turns too.
+#[test]
+fn a_step_cost_and_a_region_make_the_shortest_paths() {
+    let mut skill = docking();
+    let text = |quarters| {
+        let area = turned_box([138.0, 11.0, SIDE, 37.0], quarters);
+        format!("[[regions]]\nname = \"end\"\nbox = {area:?}\n")
+    };
+    skill.regions = vec!["room:C".to_owned(), "end".to_owned()];
+    skill.params.reward = rewards(&[(Event::Collision, -10.0), (Event::Acted, -3.0)]);
+    skill.params.reward[RegionEvent::Entered.number(1)] = 100.0;
+    for goal in [RegionEvent::Entered, RegionEvent::In] {
+        skill.goal = 1 << goal.number(1);
+        for quarters in 0..4 {
+            let world = corridor_with(18.0, quarters, &text(quarters));
+            let shared = floor_only(&world);
+            let planner = Planner::new(&world, &shared, &skill, &terms(SILENT, 0.0, MOVE as f32));
+            // Place 12 is at 144 in.
+            let found = distances(&actions(&skill), 3..12, |_, to, _| to.0 == 12);
+            check_dear_paths(&planner, &shared, &actions(&skill), &found, quarters, 3.0);
+        }
+    }
+}
+
+/// Paid for every step in sight of the light: all there is on one side of a wall, nothing on the other.
+#[test]
+fn the_light_is_worth_its_reward_where_it_is_in_sight() {
+    let mut skill = docking();
+    skill.params.reward = rewards(&[(Event::Lit, 1.0)]);
+    skill.goal = 0;
+    let text = "size = [240, 96]\nwalls = [[120, 0, 120, 96]]\nlight = { at = [12, 48], range = 400 }\n\
+        [[rooms]]\nname = \"A\"\nbox = [0, 0, 240, 96]\n";
+    let world = parse(text, Path::new("halves.toml")).unwrap_or_else(|error| panic!("{error}"));
+    let shared = floor_only(&world);
+    let planner = Planner::new(&world, &shared, &skill, &terms(SILENT, 0.0, MOVE as f32));
+    for (x, expected) in [(36.0, 1.0 / (1.0 - 0.9)), (84.0, 10.0), (156.0, 0.0), (204.0, 0.0)] {
+        for heading in 0..24 {
+            let pose = Pose { x, y: 48.0, heading: heading as f32 * 15.0 };
+            let value = planner.value(0, pose);
+            assert!((value - expected).abs() < 2.0e-3, "{pose:?}: {value} for {expected}");
+        }
     }
 }

@@ -1,0 +1,104 @@
+//! The task that a planner solves: what an action does and earns, in the terms of one skill.
+
+use crate::backend::cpu::lanes::contact::body_after;
+use crate::backend::cpu::lanes::draws::place_of;
+use crate::backend::cpu::lanes::light::{brightness, falloff, light_in_sight};
+use crate::backend::cpu::lanes::sonar::{ranges, rays};
+use crate::config::plan::{Action, Event, RegionEvent, SkillPlan};
+use crate::env::motion::{ACTED, BESIDE_LEFT, BESIDE_RIGHT, COLLISION, LIT};
+use crate::env::sonar::sonar_reading;
+use crate::env::workgroup::CohortData;
+use crate::layout::{Area, Observation, RAYS, SKILL_EVENTS};
+use crate::math::functions::sin_cos;
+use crate::world::{Pose, World};
+use bytemuck::Zeroable;
+
+/// What a skill pays for and where it ends.
+#[derive(Debug, Clone)]
+pub(super) struct Task {
+    pub(super) reward: [f32; SKILL_EVENTS],
+    /// Bits of the events that end a trial.
+    ends: u32,
+    /// Bits of the events that pay or end.
+    matters: u32,
+    /// Least and greatest reading beside a wall.
+    beside: (u32, u32),
+    /// The regions of the skill's events.
+    regions: Vec<Area>,
+    collision_cost: f32,
+}
+
+/// What one action does from one pose under one slip of the actuators.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Outcome {
+    pub(super) pose: Pose,
+    pub(super) reward: f32,
+    pub(super) ended: bool,
+}
+
+impl Task {
+    /// `collision_cost` is paid besides the skill's own.
+    pub(super) fn new(world: &World, skill: &SkillPlan, beside: (u32, u32), collision_cost: f32) -> Self {
+        let reward = skill.params.reward;
+        let paid = (0..SKILL_EVENTS).filter(|event| reward[*event] != 0.0).fold(0, |bits, event| bits | 1 << event);
+        let area = |region: &String| world.region_area(region).map_or_else(Area::zeroed, Into::into);
+        let regions = skill.regions.iter().map(area).collect();
+        Self { reward, ends: skill.goal, matters: paid | skill.goal, beside, regions, collision_cost }
+    }
+
+    /// Whether this event pays or ends a trial.
+    pub(super) fn names(&self, event: Event) -> bool {
+        self.matters & event.bit() != 0
+    }
+
+    /// Whether a turn, too, may earn something or end a trial.
+    pub(super) fn pays_turns(&self) -> bool {
+        let inside = (0..self.regions.len()).map(|region| 1 << RegionEvent::In.number(region));
+        self.matters & inside.fold(ACTED | LIT, |bits, bit: u32| bits | bit) != 0
+    }
+
+    /// For a trial that began in room `origin`.
+    pub(super) fn outcome(&self, shared: &CohortData, origin: u32, pose: Pose, action: Action, slip: f32) -> Outcome {
+        let moved = body_after(&shared.floor, pose.x, pose.y, pose.heading, action as u32, slip);
+        let after = Pose { x: moved.x, y: moved.y, heading: moved.heading };
+        let mut events = moved.events | shared.floor.plan.passed_door(origin, moved.x, moved.y) | ACTED;
+        if action == Action::Forward && self.matters & (BESIDE_RIGHT | BESIDE_LEFT) != 0 {
+            let (near, far) = self.beside;
+            events |= noiseless_sonar(shared, after).following_wall(near, far, action as u32, events);
+        }
+        if self.matters & LIT != 0 && sees_light(shared, after) {
+            events |= LIT;
+        }
+        for (region, area) in self.regions.iter().enumerate() {
+            events |= area.crossing_events(pose.x, pose.y, moved.x, moved.y) << RegionEvent::In.number(region);
+        }
+        let paid: f32 = (0..SKILL_EVENTS).filter(|i| (events >> i) & 1 == 1).map(|i| self.reward[i]).sum();
+        let reward = if events & COLLISION == 0 { paid } else { paid - self.collision_cost };
+        Outcome { pose: after, reward, ended: events & self.ends != 0 }
+    }
+}
+
+/// What the sonar shows at a pose, without noise; the other sensors show nothing.
+fn noiseless_sonar(shared: &CohortData, pose: Pose) -> Observation {
+    let (sine, cosine) = sin_cos(pose.heading);
+    let (ux, uy) = rays(cosine, sine);
+    let range = ranges(&shared.floor, pose.x, pose.y, &ux, &uy);
+    let mut seen = Observation::zeroed();
+    for ray in 0..RAYS {
+        seen.sonar[ray / 4] |= sonar_reading(range[place_of(ray)], 1.0) << (8 * (ray % 4));
+    }
+    seen
+}
+
+/// Whether some bearing is lit at a pose, without noise.
+fn sees_light(shared: &CohortData, pose: Pose) -> bool {
+    let floor = &shared.floor;
+    let most = falloff(floor, pose.x, pose.y);
+    if floor.plan.lit == 0 || most <= 1.0 || !light_in_sight(floor, pose.x, pose.y) {
+        return false;
+    }
+    let (sine, cosine) = sin_cos(pose.heading);
+    let (ux, uy) = rays(cosine, sine);
+    let bright = brightness(floor, most, pose.x, pose.y, &ux, &uy);
+    (0..RAYS).any(|bearing| bright[place_of(bearing)] > 1.0)
+}
