@@ -232,7 +232,7 @@ fn every_word_keeps_arms_apart_whose_learners_see_it() {
     for word in words::<TeacherPlan>() {
         assert!(apart(&|arm| arm.teacher = flipped(&arm.teacher, word)), "word {word} of the teacher");
     }
-    let changes: [fn(&mut SkillPlan); 11] = [
+    let changes: [fn(&mut SkillPlan); 12] = [
         |skill| skill.name.push('x'),
         |skill| skill.inputs.clear(),
         |skill| skill.children.clear(),
@@ -244,6 +244,7 @@ fn every_word_keeps_arms_apart_whose_learners_see_it() {
         |skill| skill.eval_starts.push('x'),
         |skill| skill.eval_at.push(1),
         |skill| skill.goal ^= 1,
+        |skill| skill.regions.push("x".to_owned()),
     ];
     for (number, change) in changes.iter().enumerate() {
         assert!(apart(&|arm| change(&mut arm.skills[0])), "change {number} below the root");

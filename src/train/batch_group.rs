@@ -127,7 +127,7 @@ impl BatchGroup {
                 continue;
             }
             let own = HyperParams { run_seed: plan.run_seed, ..skill.params };
-            let task = bytes(&(first.world, &terms, own.reward, skill.goal, skill.actions()));
+            let task = bytes(&(first.world, &terms, own.reward, skill.goal, &skill.regions, skill.actions()));
             let make = || Rc::new(Planner::new(world, &shared, skill, &terms));
             let planner = Rc::clone(planners.known.entry(task.clone()).or_insert_with(make));
             let driven = driven(&shared.skills[number], skill);
