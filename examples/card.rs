@@ -12,10 +12,12 @@
 
 use skilltree::backend::Cohort;
 use skilltree::backend::cpu::cpu_backend;
-use skilltree::backend::gpu::{GpuBackend, GpuOptions, adapter, arithmetic_check, conformance, device::Device};
+use skilltree::backend::gpu::conformance::{QUESTIONS, ShapeDifference, ask, differences, questions};
+use skilltree::backend::gpu::{GpuBackend, GpuOptions, adapter, device::Device};
 use skilltree::backend::host::HostBackend;
 use skilltree::backend::parity;
-use skilltree::bench::embedded_configs::{DOCKING, ONE_POINT, THRESHOLDS, embedded_plan};
+use skilltree::bench::benchmarks::UpdateRule;
+use skilltree::bench::embedded_configs::{ONE_POINT, THRESHOLDS, embedded_plan};
 use skilltree::bench::robot_walk::RobotWalk;
 use skilltree::bench::taught_replay::TaughtReplay;
 use skilltree::train::batch::train;
@@ -42,26 +44,14 @@ fn shapes() -> bool {
     for adapter in &found {
         let name = adapter.get_info().name;
         let device = Device::open(adapter).unwrap_or_else(|error| panic!("{error}"));
-        let questions = conformance::questions(conformance::QUESTIONS);
-        let answers = conformance::ask(&device, &questions).unwrap_or_else(|error| panic!("{error}"));
-        for word in 0..arithmetic_check::ANSWER_WORDS {
-            let (mut count, mut first) = (0, None);
-            for (asked, found) in questions.as_chunks::<32>().0.iter().zip(answers.as_chunks::<32>().0) {
-                for (wanted, found) in arithmetic_check::arithmetic_check(asked).iter().zip(found) {
-                    if wanted[word] != found[word] {
-                        count += 1;
-                        first.get_or_insert((wanted[word], found[word]));
-                    }
-                }
-            }
-            if let Some((wanted, found)) = first {
-                equal = false;
-                println!(
-                    "{{\"what\":\"shape\",\"adapter\":{name:?},\"shape\":{:?},\"differing\":{count},\"of\":{},\"wanted\":\"{wanted:#010x}\",\"found\":\"{found:#010x}\"}}",
-                    arithmetic_check::NAMES[word],
-                    questions.len()
-                );
-            }
+        let questions = questions(QUESTIONS);
+        let answers = ask(&device, &questions).unwrap_or_else(|error| panic!("{error}"));
+        for ShapeDifference { name: shape, count, wanted, found, .. } in differences(&questions, &answers) {
+            equal = false;
+            println!(
+                "{{\"what\":\"shape\",\"adapter\":{name:?},\"shape\":{shape:?},\"differing\":{count},\"of\":{},\"wanted\":\"{wanted:#010x}\",\"found\":\"{found:#010x}\"}}",
+                questions.len()
+            );
         }
         println!("{{\"what\":\"shapes\",\"adapter\":{name:?},\"equal\":{equal}}}");
     }
@@ -103,11 +93,10 @@ fn parity(config: &str, learners: usize, variants: &str) -> bool {
 
 /// Kernel `step`: steps a second on the wall and on the device.
 fn steps(robots: &[u32], quanta: &[u32]) {
-    let plan = embedded_plan(DOCKING, &["arms=[\"taught-adam\"]"], 1).unwrap_or_else(|error| panic!("{error}"));
     let mut device = gpu(None, None, None);
     for count in robots {
         for each in quanta {
-            let mut walk = RobotWalk::new(&plan, *count);
+            let mut walk = RobotWalk::new(*count).unwrap_or_else(|error| panic!("{error}"));
             let actions = walk.actions(0..4);
             let mut best = (0.0_f64, 0.0_f64);
             for _ in 0..3 {
@@ -131,24 +120,13 @@ fn replay(learners: &[u32], rules: &str, variants: &str, transitions: u64, deadl
     let mut equal = true;
     // One device each, so that a kernel is compiled once for each number of words held.
     let (mut holding, mut plain) = (None, None);
-    for (name, optimiser, hidden) in
-        [("adam-32", "adam", 32), ("rows-32", "adam-rows", 32), ("rows-16", "adam-rows", 16)]
-    {
+    for (name, rule) in ["adam-32", "rows-32", "rows-16"].into_iter().zip(UpdateRule::ALL) {
         if !rules.split(',').any(|wanted| wanted == name) {
             continue;
         }
         for count in learners {
             let passes = (transitions / (u64::from(*count) * 110)).clamp(2, 200);
-            let set = [
-                "arms=[\"taught-adam\"]".to_owned(),
-                format!("arm.taught-adam.learning.pretrain_epochs={passes}"),
-                format!("arm.taught-adam.learning.optimiser=\"{optimiser}\""),
-                format!("learning.hidden={hidden}"),
-                "teacher.eval_episodes=1".to_owned(),
-                "skill.dock.trials=0".to_owned(),
-            ];
-            let set: Vec<&str> = set.iter().map(String::as_str).collect();
-            let plan = embedded_plan(DOCKING, &set, *count).unwrap_or_else(|error| panic!("{error}"));
+            let plan = rule.plan(*count, passes as u32).unwrap_or_else(|error| panic!("{error}"));
             let taught = TaughtReplay::new(&plan).unwrap_or_else(|error| panic!("{error}"));
             let units = taught.transitions() * passes;
             let mut expected: Option<Cohort> = None;

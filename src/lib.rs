@@ -37,9 +37,10 @@
 //!   The plain twins are a backend of their own, `--backend reference`. A test compares names, comments and statements.
 //! - The **shader**: both languages share one memory layout, [`layout`], from which the constants and structs of WGSL are
 //!   emitted.
-//! - The **tuned forms** of the five functions that take the time ([`env::workgroup::HotForms`]: draws, observation,
-//!   motion, forward, backward) and of kernel `step` stand in [`backend::cpu::lanes`], are compiled for each instruction
-//!   set, and may be as clever as they like. All else runs the plain twins there too.
+//! - The **tuned forms** of the functions that take the time ([`env::workgroup::HotForms`]: draws, observation, motion,
+//!   encoding, forward, odds, backward) and of kernel `step` are compiled for each instruction set. Encoding and odds are the
+//!   plain twins; the others stand in [`backend::cpu::lanes`] and may be as clever as they like. All else runs the plain
+//!   twins there too.
 //!
 //! Results are built from IEEE f32 `+ - *`, comparisons and integers alone ([`math`]), random numbers are counters
 //! ([`math::rng`]), and on Vulkan the SPIR-V is decorated so that no compiler fuses or re-associates. Hence all forms
@@ -99,7 +100,9 @@
 //!   in the pair `env/memory`.
 //! - **an action**: a row in `layout/actions.rs`; a turn needs no more. A move other than forward and backward takes its
 //!   case in the pair `env/motion` and in `backend/cpu/lanes/contact.rs`.
-//! - **a reward event**: a row in `layout/events.rs`; where it is found, in the pair `env/events` and its call in `env/step`.
+//! - **a reward event**: a row in `layout/events.rs`; where it is found, in the pair `env/events` and its call in `env/step`;
+//!   a line in `teacher/task.rs`, so that the planner teaches for it. An event of regions needs no call: its row, and
+//!   `crossing_events` in the pair.
 //! - **a hyper-parameter**: a row in `layout/params.rs`, which makes the key, its reader, its reference page, the learner's
 //!   record and the field in WGSL; its use in a kernel pair.
 //! - **an optimiser**: a word in `layout/choices.rs`, a pair in `qnet/optimiser/`, its call in the pair `qnet/backward`, a
@@ -119,14 +122,17 @@
 //!   the CPU wants as arrays.
 //! - Memories of a trial (traces of light and doors, means of ranges) belong to the robot and not to a skill: all skills of
 //!   a tree may take them as inputs.
+//! - Events of regions are not recorded: which regions a skill's reward and goal name is the skill's own affair, so they
+//!   are found anew for every skill that asks, from where the robot was and is.
 //! - Thresholds are learned on the host, between two skills, from nets and lessons that the device hands over once: one
 //!   implementation serves every backend.
 //!
 //! # From Rust
 //!
-//! What is re-exported here is the public interface: an [`Experiment`] is loaded from files or memory, a [`Backend`] is opened, the experiment
-//! runs into a folder, and its [`FinishedRun`] and report are read. `examples/train.rs` does so in some twenty lines. The
-//! modules are public for the program, tests and examples alone; their names may change with any version.
+//! What is re-exported here is the public interface: an [`Experiment`] is loaded from files or memory, a [`Backend`] is
+//! opened, the experiment runs into a folder, and its [`FinishedRun`] and report are read. `examples/train.rs` does so in
+//! some twenty lines. The modules are public for the program, tests and examples alone; their names may change with any
+//! version.
 
 #[doc(hidden)]
 pub mod backend;

@@ -6,13 +6,6 @@
 // Boltzmann weight of every child, 0 where it is not available.
 var<workgroup> weights: array<f32, MAX_CHILDREN>;
 
-// What the Q-values say about the allowed children.
-struct Boltzmann {
-    best: f32,
-    greedy: u32,
-    total: f32,
-}
-
 fn inverse_temperature(skill: u32, trial: u32) -> f32 {
     let s = params_base + skill;
     let risen = select(params[s].inverse_temperature_trials, trial, trial < params[s].inverse_temperature_trials);

@@ -1,6 +1,6 @@
 //! Kernels on a pool of threads of this machine, one learner to a thread at a time.
 
-use super::{Backend, BackendError, Cohort, Stop, Test, fresh, memory};
+use super::{Backend, BackendError, Cohort, Stop, Test, fresh, memory, nothing_loaded};
 use crate::env::workgroup::{CohortData, HotForms, Nets, Workgroup};
 use crate::layout::{Dispatch, Episode, LearnerState, Robot};
 use bytemuck::{Pod, Zeroable};
@@ -83,10 +83,6 @@ impl HostBackend {
     fn loaded(&self) -> Result<&Cohort, BackendError> {
         self.cohort.as_ref().ok_or_else(nothing_loaded)
     }
-}
-
-fn nothing_loaded() -> BackendError {
-    BackendError::Device { kernel: "train", message: "no cohort is loaded".to_owned() }
 }
 
 impl Backend for HostBackend {

@@ -79,7 +79,12 @@ fn fresh(count: usize) -> Vec<Episode> {
     vec![Episode { state: EPISODE_FRESH, ..unset }; count]
 }
 
-/// Executes kernels.
+/// What follows where no cohort is loaded.
+fn nothing_loaded() -> BackendError {
+    BackendError::Device { kernel: "train", message: "no cohort is loaded".to_owned() }
+}
+
+/// Executes kernels. A call that does not say when it returns an error does so where the device fails.
 pub trait Backend {
     /// What to call it in messages and manifests, such as `cpu, 2 threads`.
     fn describe(&self) -> String;
@@ -104,38 +109,23 @@ pub trait Backend {
 
     /// Moves every learner that does not hold at `stop` on by a bounded amount of work, about half a
     /// second's in all, and shows where the learners stand.
-    ///
-    /// # Errors
-    /// Where the device fails.
     fn advance(&mut self, stop: Stop) -> Result<&[LearnerState], BackendError>;
 
     /// Learners of the cohort, 0 where none is loaded.
     fn learners(&self) -> usize;
 
     /// Runs a test of some of the learners to its end: their episodes, learner by learner.
-    ///
-    /// # Errors
-    /// Where the device fails.
     fn evaluate_some(&mut self, test: Test, learners: Range<usize>) -> Result<Vec<Episode>, BackendError>;
 
     /// Runs a test of all learners.
-    ///
-    /// # Errors
-    /// Where the device fails.
     fn evaluate(&mut self, test: Test) -> Result<Vec<Episode>, BackendError> {
         self.evaluate_some(test, 0..self.learners())
     }
 
     /// The cohort's memory as it stands.
-    ///
-    /// # Errors
-    /// Where the device fails.
     fn memory(&mut self) -> Result<&Cohort, BackendError>;
 
     /// Lets robots carry out their action `iterations` times each.
-    ///
-    /// # Errors
-    /// Where the device fails.
     fn step(&mut self, shared: &CohortData, robots: &mut [Robot], iterations: u32) -> Result<(), BackendError>;
 }
 

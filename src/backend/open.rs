@@ -56,15 +56,15 @@ impl BackendOptions {
         Ok(Box::new(cpu_backend(self.threads, self.iterations)?))
     }
 
-    #[cfg(feature = "gpu")]
+    #[cfg_attr(not(feature = "gpu"), expect(unused_variables, reason = "there is none"))]
     fn gpu(&self, exact: bool) -> Result<Box<dyn Backend>, BackendError> {
-        let options =
-            GpuOptions { adapter: self.adapter.clone(), iterations: self.iterations, ..GpuOptions::default() };
-        Ok(Box::new(if exact { GpuBackend::exact(&options)? } else { GpuBackend::new(&options)? }))
-    }
-
-    #[cfg(not(feature = "gpu"))]
-    fn gpu(&self, _exact: bool) -> Result<Box<dyn Backend>, BackendError> {
+        #[cfg(feature = "gpu")]
+        {
+            let options =
+                GpuOptions { adapter: self.adapter.clone(), iterations: self.iterations, ..GpuOptions::default() };
+            Ok(Box::new(if exact { GpuBackend::exact(&options)? } else { GpuBackend::new(&options)? }))
+        }
+        #[cfg(not(feature = "gpu"))]
         Err(BackendError::NotBuilt)
     }
 }

@@ -42,20 +42,22 @@ impl fmt::Display for Difference {
 /// What a word holds, and whether that is an f32.
 type WordField = (String, bool);
 
-/// The first differing word of two equally long slices, described by `place`.
+/// The first differing word of two equally long slices, described by `place`. Words are `tolerated` that need not be
+/// numbers.
 fn first(
     (kernel, learner): (&'static str, usize),
     (left, right): (&[u32], &[u32]),
-    failed: bool,
+    tolerated: impl Fn(u32, u32) -> bool,
     place: impl Fn(usize) -> WordField,
 ) -> Option<Difference> {
     left.iter().zip(right).enumerate().find_map(|(word, (&left, &right))| {
-        let wild = |bits| !failed && !f32::from_bits(bits).is_finite();
-        if left == right && !wild(left) {
+        let wild = |bits| !f32::from_bits(bits).is_finite();
+        let suspect = (wild(left) || wild(right)) && !tolerated(left, right);
+        if left == right && !suspect {
             return None;
         }
         let (field, number) = place(word);
-        let finite = !(number && (wild(left) || wild(right)));
+        let finite = !(number && suspect);
         (left != right || !finite).then_some(Difference { kernel, learner, field, left, right, finite })
     })
 }
@@ -75,8 +77,7 @@ fn field_of(layout: &str, word: usize) -> WordField {
     };
     let within = word - offset / 4;
     if layout_of(wgsl).is_some() {
-        let (field, number) = field_of(wgsl, within);
-        (format!("{name}.{field}"), number)
+        prefixed(&format!("{name}."), field_of(wgsl, within))
     } else if wgsl.starts_with("array") {
         (format!("{name} {within}"), wgsl.contains("f32"))
     } else {
@@ -155,29 +156,19 @@ pub fn advance(left: &Cohort, right: &Cohort) -> Option<Difference> {
     }
     let skills = &left.shared.skills;
     let one = |learner: usize| {
-        let states = (&left.states[learner], &right.states[learner]);
-        let failed = states.0.phase == PHASE_FAILED && states.1.phase == PHASE_FAILED;
-        let at = (KERNEL, learner);
+        let failed = [left, right].iter().all(|cohort| cohort.states[learner].phase == PHASE_FAILED);
+        let unwritten = |left, right| failed || (left, right) == (UNWRITTEN, UNWRITTEN);
         let part = |stride: usize| learner * stride..(learner + 1) * stride;
         let (nets, lessons, rows) = (part(left.nets_stride), part(left.lessons_stride), part(left.rows_stride));
-        let output =
-            |word: (String, bool), left: u32, right: u32| (word.0, word.1 && (left, right) != (UNWRITTEN, UNWRITTEN));
-        let outputs = |left: &[u32], right: &[u32], place: &dyn Fn(usize) -> WordField| {
-            first(at, (left, right), failed, |word| output(place(word), left[word], right[word]))
-        };
-        first(at, (words(states.0), words(states.1)), failed, |word| {
-            let (name, number) = field_of("LearnerState", word);
-            (format!("state {name}"), number)
-        })
-        .or_else(|| {
-            let both = (bytemuck::cast_slice(&left.nets[nets.clone()]), bytemuck::cast_slice(&right.nets[nets]));
-            first(at, both, failed, |word| nets_word(skills, word))
-        })
-        .or_else(|| {
-            let place = |word| lessons_word(skills, word);
-            outputs(&left.lessons[lessons.clone()], &right.lessons[lessons], &place)
-        })
-        .or_else(|| outputs(&left.rows[rows.clone()], &right.rows[rows], &rows_word))
+        let states = (words(&left.states[learner]), words(&right.states[learner]));
+        let nets = (bytemuck::cast_slice(&left.nets[nets.clone()]), bytemuck::cast_slice(&right.nets[nets]));
+        let lessons = (&left.lessons[lessons.clone()], &right.lessons[lessons]);
+        let rows = (&left.rows[rows.clone()], &right.rows[rows]);
+        let at = (KERNEL, learner);
+        first(at, states, |_, _| failed, |word| prefixed("state ", field_of("LearnerState", word)))
+            .or_else(|| first(at, nets, |_, _| failed, |word| nets_word(skills, word)))
+            .or_else(|| first(at, lessons, unwritten, |word| lessons_word(skills, word)))
+            .or_else(|| first(at, rows, unwritten, rows_word))
     };
     let learners = left.states.len().min(right.states.len());
     let size = || sizes(KERNEL, learners, "learners", left.states.len(), right.states.len());
@@ -186,26 +177,31 @@ pub fn advance(left: &Cohort, right: &Cohort) -> Option<Difference> {
 
 /// The first difference between two tests, of which each learner took `episodes_per_learner` trials.
 pub fn evaluate(left: &[Episode], right: &[Episode], episodes_per_learner: usize) -> Option<Difference> {
-    const KERNEL: &str = "evaluate";
     let each = episodes_per_learner.max(1);
     let one = |(number, (left, right)): (usize, (&Episode, &Episode))| {
-        first((KERNEL, number / each), (words(left), words(right)), false, |word| {
-            let (name, number_like) = field_of("Episode", word);
-            (format!("test trial {}, {name}", number % each), number_like)
-        })
+        let trial = format!("test trial {}, ", number % each);
+        first(
+            ("evaluate", number / each),
+            (words(left), words(right)),
+            |_, _| false,
+            |word| prefixed(&trial, field_of("Episode", word)),
+        )
     };
-    let size = || sizes(KERNEL, left.len().min(right.len()) / each, "test trials", left.len(), right.len());
+    let size = || sizes("evaluate", left.len().min(right.len()) / each, "test trials", left.len(), right.len());
     left.iter().zip(right).enumerate().find_map(one).or_else(size)
 }
 
 /// The first difference between robots after kernel `step`.
 pub fn step(left: &[Robot], right: &[Robot]) -> Option<Difference> {
-    const KERNEL: &str = "step";
     let one = |(number, (left, right)): (usize, (&Robot, &Robot))| {
-        first((KERNEL, number), (words(left), words(right)), false, |word| field_of("Robot", word))
+        first(("step", number), (words(left), words(right)), |_, _| false, |word| field_of("Robot", word))
     };
-    let size = || sizes(KERNEL, left.len().min(right.len()), "robots", left.len(), right.len());
+    let size = || sizes("step", left.len().min(right.len()), "robots", left.len(), right.len());
     left.iter().zip(right).enumerate().find_map(one).or_else(size)
+}
+
+fn prefixed(prefix: &str, (field, number): WordField) -> WordField {
+    (format!("{prefix}{field}"), number)
 }
 
 fn words<T: bytemuck::Pod>(record: &T) -> &[u32] {

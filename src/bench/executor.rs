@@ -8,7 +8,6 @@ use crate::backend::open::{OpenAdapter, open_adapters};
 use crate::backend::reference::reference_backend;
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
-use std::fmt;
 
 /// Which executors to measure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -54,12 +53,6 @@ pub enum ExecutorKind {
     Gpu,
     /// A graphics adapter that is a program on the CPU.
     SoftwareGpu,
-}
-
-impl fmt::Debug for Executor {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "Executor({:?})", self.info)
-    }
 }
 
 impl Executor {

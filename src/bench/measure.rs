@@ -2,8 +2,8 @@
 //!
 //! The first round is not counted: it compiles shaders and fills caches. In every round all bytes are compared.
 
-use super::benchmarks::{BenchSizes, Benchmark, Decisions, HierarchyLearners, Measurement, RobotSteps, WholeLearners};
-use super::benchmarks::{Transitions, UpdateRule};
+use super::benchmarks::{BenchSizes, Benchmark, HierarchyLearners, Measurement, UpdateRule};
+use super::benchmarks::{decisions, robot_steps, transitions, whole_learners};
 use super::embedded_configs::{HIERARCHY, ONE_POINT, THRESHOLDS};
 use super::executor::{Executor, ExecutorInfo, ExecutorKind, ExecutorSet, open_executors};
 use super::result::{BenchOrigin, BenchReport, FORMAT, RateRow, TaskReport};
@@ -15,55 +15,50 @@ const CARD_LEARNERS: u32 = 1024;
 /// Times that an action is carried out where the host is to be out of the way.
 const REPEATS: u32 = 8;
 
-/// What to measure.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct BenchOptions {
-    /// On whom.
-    pub executors: ExecutorSet,
-    /// Samples of everything.
-    pub samples: u32,
-    /// Whole learners to train on each executor; 0 for none. As many as the CPU has cores, and a graphics card room,
-    /// if not given.
-    pub learners: Option<u32>,
-}
-
-/// Measures everything. `note` is told what is being measured, `command` is kept in the report.
+/// Measures everything, `samples` times each. `learners` are the whole learners to train on each executor, 0 for none; as
+/// many as the CPU has cores, and a graphics card room, if not given. `note` is told what is being measured, `command` is
+/// kept in the report.
 ///
 /// # Errors
 /// [`BenchError::Differs`] where two executors leave different bytes; else where one fails.
-pub fn bench(options: BenchOptions, command: &str, note: &mut dyn FnMut(&str)) -> Result<BenchReport, BenchError> {
+pub fn bench(
+    executors: ExecutorSet,
+    samples: u32,
+    learners: Option<u32>,
+    command: &str,
+    note: &mut dyn FnMut(&str),
+) -> Result<BenchReport, BenchError> {
     let origin = BenchOrigin::new(command);
-    let (mut executors, mut left_out) = open_executors(options.executors)?;
+    let (mut executors, mut left_out) = open_executors(executors)?;
     let has = |kind| executors.iter().any(|executor| executor.info.kind == kind);
     let (card, software) = (has(ExecutorKind::Gpu), has(ExecutorKind::SoftwareGpu));
     let sizes = if card { BenchSizes::CARD } else { BenchSizes::CPU };
-    let on_cpu = options.learners.unwrap_or(cores() as u32);
-    let on_card = options.learners.unwrap_or(if card { CARD_LEARNERS } else { 0 });
+    let on_cpu = learners.unwrap_or(cores() as u32);
+    let on_card = learners.unwrap_or(if card { CARD_LEARNERS } else { 0 });
     let most = on_cpu.max(on_card);
     let hierarchy = HierarchyLearners::new(HIERARCHY, &[], sizes.learners.max(most))?;
     let lean = if most > 0 { Some(HierarchyLearners::new(THRESHOLDS, &ONE_POINT, most)?) } else { None };
-    let mut benchmarks: Vec<Box<dyn Benchmark + '_>> =
-        vec![Box::new(RobotSteps::new(sizes, 1)?), Box::new(RobotSteps::new(sizes, REPEATS)?)];
+    let mut benchmarks = vec![robot_steps(sizes, 1)?, robot_steps(sizes, REPEATS)?];
     for rule in UpdateRule::ALL {
-        benchmarks.push(Box::new(Transitions::new(sizes, rule)?));
+        benchmarks.push(transitions(sizes, rule)?);
     }
-    benchmarks.push(Box::new(Decisions::new(&hierarchy, sizes)));
+    benchmarks.push(decisions(&hierarchy, sizes));
     if let Some(lean) = &lean {
-        benchmarks.push(Box::new(WholeLearners::new("learners", &hierarchy, on_cpu, on_card)));
-        benchmarks.push(Box::new(WholeLearners::new("learners-lean", lean, on_cpu, on_card)));
+        benchmarks.push(whole_learners("learners", &hierarchy, on_cpu, on_card));
+        benchmarks.push(whole_learners("learners-lean", lean, on_cpu, on_card));
         if software {
             left_out.push("learners on software adapters: they would take too long".to_owned());
         }
     }
     let mut tasks = Vec::new();
     for benchmark in &benchmarks {
-        note(&format!("{}: {}", benchmark.name(), benchmark.about()));
-        tasks.push(measure(benchmark.as_ref(), &mut executors, options.samples)?);
+        note(&format!("{}: {}", benchmark.name, benchmark.about));
+        tasks.push(measure(benchmark, &mut executors, samples)?);
     }
     Ok(BenchReport {
         format: FORMAT,
         origin,
-        samples: options.samples,
+        samples,
         executors: executors.into_iter().map(|executor| executor.info).collect(),
         left_out,
         tasks,
@@ -74,41 +69,26 @@ pub fn bench(options: BenchOptions, command: &str, note: &mut dyn FnMut(&str)) -
 ///
 /// # Errors
 /// [`BenchError::Differs`] where two executors leave different bytes; else where one fails.
-pub fn measure(benchmark: &dyn Benchmark, executors: &mut [Executor], samples: u32) -> Result<TaskReport, BenchError> {
+pub fn measure(benchmark: &Benchmark<'_>, executors: &mut [Executor], samples: u32) -> Result<TaskReport, BenchError> {
     let mut taken: Vec<Vec<Measurement>> = executors.iter().map(|_| Vec::new()).collect();
-    for number in 0..=samples {
-        let round = round(benchmark, executors, number)?;
-        if number > 0 {
-            for (taken, measured) in taken.iter_mut().zip(round) {
-                taken.extend(measured);
+    for sample in 0..=samples {
+        let mut first: Option<(String, Vec<u32>)> = None;
+        for (executor, taken) in executors.iter_mut().zip(&mut taken) {
+            let Some(mut found) = (benchmark.run)(executor, sample)? else { continue };
+            let (name, words) = (&executor.info.name, std::mem::take(&mut found.words));
+            match &first {
+                None => first = Some((name.clone(), words)),
+                Some((left, expected)) => compare(benchmark.name, (left, expected), (name, &words))?,
+            }
+            if sample > 0 {
+                taken.push(found);
             }
         }
     }
     let infos: Vec<&ExecutorInfo> = executors.iter().map(|executor| &executor.info).collect();
     let reference = infos.iter().position(|info| info.kind == ExecutorKind::Reference).map(|number| &taken[number][..]);
     let rows = infos.iter().zip(&taken).filter_map(|(info, own)| row(info, own, reference)).collect();
-    Ok(TaskReport { name: benchmark.name().to_owned(), about: benchmark.about(), rows })
-}
-
-/// Every executor does the work of one sample, and all bytes are compared with those of the first.
-fn round(
-    benchmark: &dyn Benchmark,
-    executors: &mut [Executor],
-    sample: u32,
-) -> Result<Vec<Option<Measurement>>, BenchError> {
-    let (mut measured, mut first) = (Vec::new(), None);
-    for executor in executors {
-        let mut found = benchmark.run(executor, sample)?;
-        if let Some(found) = &mut found {
-            let (name, words) = (executor.info.name.clone(), std::mem::take(&mut found.words));
-            match &first {
-                None => first = Some((name, words)),
-                Some((left, expected)) => compare(benchmark.name(), (left, expected), (&name, &words))?,
-            }
-        }
-        measured.push(found);
-    }
-    Ok(measured)
+    Ok(TaskReport { name: benchmark.name.to_owned(), about: benchmark.about.clone(), rows })
 }
 
 /// What the samples of an executor say, beside those of the reference if it did the same work.

@@ -13,7 +13,6 @@ pub mod result;
 pub mod robot_walk;
 pub mod scaling;
 pub mod taught_replay;
-pub mod text;
 pub mod timing;
 
 use crate::backend::BackendError;

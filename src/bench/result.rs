@@ -7,6 +7,7 @@ use super::executor::ExecutorInfo;
 use super::timing::{Spread, cores};
 use super::{BenchError, make_folder, write_file};
 use serde::{Deserialize, Serialize};
+use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
@@ -100,6 +101,23 @@ impl BenchReport {
         serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
     }
 
+    /// As people read it.
+    pub fn text(&self) -> String {
+        let origin = &self.origin;
+        let mut out = format!("{}, {} cores, {}\n", origin.cpu, origin.cores, origin.system);
+        for executor in &self.executors {
+            let _ = writeln!(out, "  {:<9} {}", executor.name, executor.device);
+        }
+        let _ = writeln!(out, "{} samples in turn: medians, and quartiles in brackets", self.samples);
+        for task in &self.tasks {
+            let _ = write!(out, "\n{}", task_text(task));
+        }
+        for reason in &self.left_out {
+            let _ = write!(out, "\nleft out: {reason}");
+        }
+        out.trim_end().to_owned() + "\n"
+    }
+
     /// Writes it into `folder` as `DATE-MACHINE.json`, with a number where that is taken, and hands back the path.
     ///
     /// # Errors
@@ -110,14 +128,31 @@ impl BenchReport {
         let words = format!("{day} {} {} cores", self.origin.cpu, self.origin.cores).to_lowercase();
         let words: Vec<&str> =
             words.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty()).collect();
-        let mut path = folder.join(words.join("-") + ".json");
-        for number in 2.. {
-            if !path.exists() {
-                break;
-            }
-            path = folder.join(format!("{}-{number}.json", words.join("-")));
+        let stem = words.join("-");
+        let (mut path, mut number) = (folder.join(format!("{stem}.json")), 1);
+        while path.exists() {
+            number += 1;
+            path = folder.join(format!("{stem}-{number}.json"));
         }
         write_file(&path, self.json().as_bytes())?;
         Ok(path)
     }
+}
+
+fn task_text(task: &TaskReport) -> String {
+    let mut out = format!("{}: {}\n", task.name, task.about);
+    let most = task.rows.iter().map(|row| row.per_second.median.max(row.per_cpu_second.median)).fold(0.0, f64::max);
+    let (factor, letter) = if most >= 1.0e5 { (1.0e-6, "M ") } else { (1.0, "") };
+    for row in &task.rows {
+        let ratio = row.over_reference.as_ref().map(|ratio| format!(", {:.1} x reference", ratio.median));
+        let _ = writeln!(
+            out,
+            "  {:<9} {:>24} {letter}per CPU-second {:>24} {letter}per second{}",
+            row.executor,
+            row.per_cpu_second.text(factor, 3),
+            row.per_second.text(factor, 3),
+            ratio.unwrap_or_default()
+        );
+    }
+    out
 }

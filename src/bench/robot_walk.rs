@@ -1,7 +1,9 @@
 //! Robots all over a floor, under random actions.
 
+use super::BenchError;
+use super::embedded_configs::{DOCKING, embedded_plan};
 use crate::backend::{Backend, BackendError};
-use crate::config::plan::{Action, Plan};
+use crate::config::plan::Action;
 use crate::env::workgroup::CohortData;
 use crate::layout::Robot;
 use crate::math::rng::{below, philox};
@@ -20,8 +22,12 @@ pub struct RobotWalk {
 }
 
 impl RobotWalk {
-    /// `count` robots in free space of the plan's world, with the noise of its first arm.
-    pub fn new(plan: &Plan, count: u32) -> Self {
+    /// `count` robots in free space of the shipped office, with the shipped noise.
+    ///
+    /// # Errors
+    /// Where the built-in config cannot be read.
+    pub fn new(count: u32) -> Result<Self, BenchError> {
+        let plan = embedded_plan(DOCKING, &["arms=[\"taught-adam\"]"], 1)?;
         let (world, noise) = (plan.world(), &plan.arms[0].noise);
         let part = |word: u32| (word >> 8) as f32 / 16_777_216.0;
         let poses = (0..u32::MAX).map(|number| philox([number, 0, 0, 0], [1, 1])).map(|words| Pose {
@@ -31,7 +37,7 @@ impl RobotWalk {
         });
         let free = poses.filter(|pose| world.is_free(Vec2::new(pose.x, pose.y)));
         let robots = (0..count).zip(free).map(|(number, pose)| robot_at(pose, noise, plan.run_seed, number)).collect();
-        Self { shared: floor_only(world), robots }
+        Ok(Self { shared: floor_only(world), robots })
     }
 
     /// Codes of the robots' actions in some rounds, round by round.

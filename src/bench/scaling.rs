@@ -76,23 +76,20 @@ pub fn scaling(
             note(&format!("sample {sample} of {samples}: {count} learners"));
             let repeats = (1024 / count).max(1);
             let ids: Vec<LearnerId> = seeds.iter().copied().cycle().take(*count as usize).collect();
-            let (_, elapsed) = timed(|| {
-                for _repeat in 0..repeats {
-                    train(&plan, &group, &ids, &|_| None, None, &mut backend, &mut ())?;
-                }
-                Ok(())
-            })?;
+            let mut train = || train(&plan, &group, &ids, &|_| None, None, &mut backend, &mut ());
+            let (done, elapsed) = timed(|| (0..repeats).try_for_each(|_| train().map(drop)));
+            done?;
             let learners = f64::from(count * repeats);
             if sample > 0 {
                 taken.push(Elapsed { wall: elapsed.wall / learners, cpu: elapsed.cpu / learners });
             }
         }
     }
-    let rows = counts.iter().zip(&taken).filter_map(|(learners, taken)| {
+    let row = |(learners, taken): (&u32, &Vec<Elapsed>)| {
         let cpu_seconds = Spread::of(taken.iter().map(|each| each.cpu))?;
         Some(ScalingRow { learners: *learners, cpu_seconds, seconds: Spread::of(taken.iter().map(|each| each.wall))? })
-    });
-    let rows: Vec<ScalingRow> = rows.collect();
+    };
+    let rows: Vec<ScalingRow> = counts.iter().zip(&taken).filter_map(row).collect();
     let costs = || rows.iter().map(|row| row.cpu_seconds.median);
     let greatest_over_least = costs().fold(0.0, f64::max) / costs().fold(f64::INFINITY, f64::min);
     Ok(ScalingReport { origin, threads: cores(), rows, greatest_over_least })

@@ -1,6 +1,5 @@
 //! Time, and what is told of several measurements.
 
-use super::BenchError;
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
@@ -14,18 +13,15 @@ pub struct Elapsed {
 }
 
 /// Calls and times.
-///
-/// # Errors
-/// Those of the call.
-pub fn timed<T>(call: impl FnOnce() -> Result<T, BenchError>) -> Result<(T, Elapsed), BenchError> {
+pub fn timed<T>(call: impl FnOnce() -> T) -> (T, Elapsed) {
     let (before, begun) = (cpu_seconds(), Instant::now());
-    let value = call()?;
+    let value = call();
     let wall = begun.elapsed().as_secs_f64().max(1.0e-9);
     let cpu = match (before, cpu_seconds()) {
         (Some(before), Some(after)) => (after - before).max(1.0e-9),
         _ => wall,
     };
-    Ok((value, Elapsed { wall, cpu }))
+    (value, Elapsed { wall, cpu })
 }
 
 /// CPU time of all threads of this process, ended ones included.

@@ -4,9 +4,9 @@ use super::console::{print, tell};
 use super::error::{CliError, exit_codes};
 use crate::bench::executor::ExecutorSet;
 use crate::bench::export::{self, export};
-use crate::bench::measure::{BenchOptions, bench as run_bench};
+use crate::bench::measure::bench as run_bench;
+use crate::bench::result;
 use crate::bench::scaling::{COUNTS, scaling};
-use crate::bench::{result, text};
 use std::path::{Path, PathBuf};
 
 /// Measures robot-steps, decisions, replayed transitions and whole learners on every backend. Whatever two of them do
@@ -64,11 +64,9 @@ pub(super) fn bench(arguments: &BenchArguments) -> Result<(), CliError> {
         let json = || serde_json::to_string_pretty(&report).unwrap_or_default() + "\n";
         return print(&if arguments.json { json() } else { report.text() });
     }
-    let options =
-        BenchOptions { executors: arguments.backend, samples: arguments.samples, learners: arguments.learners };
-    let report = run_bench(options, &command, note)?;
+    let report = run_bench(arguments.backend, arguments.samples, arguments.learners, &command, note)?;
     if arguments.record {
         tell(&format!("kept: {}", report.record(Path::new(result::FOLDER))?.display()));
     }
-    print(&if arguments.json { report.json() } else { text::text(&report) })
+    print(&if arguments.json { report.json() } else { report.text() })
 }

@@ -2,8 +2,8 @@
 
 use super::segments::SegmentGrid;
 use crate::layout::{
-    Agent, Dispatch, HyperParams, LANES, LearnerState, MAX_CHILDREN, MAX_INPUTS, MAX_ROWS, MAX_SKILLS, Moved, Noise,
-    SkillShape, Step, TrialRecord, WorldUniform,
+    Agent, Boltzmann, Dispatch, HyperParams, LANES, LearnerState, MAX_CHILDREN, MAX_INPUTS, MAX_ROWS, MAX_SKILLS,
+    Moved, Noise, SkillShape, Step, TrialRecord, WorldUniform,
 };
 use crate::math::reduce::{Lanes, Partials};
 use crate::math::rng::{StepRandom, Stream};
@@ -64,8 +64,12 @@ pub struct HotForms {
     pub observe: fn(&mut Workgroup<'_>, x: f32, y: f32, heading: f32, bumpers: u32, noise: Noise),
     /// [`Workgroup::move_body`].
     pub move_body: fn(&Workgroup<'_>, x: f32, y: f32, heading: f32, action: u32, slip: f32) -> Moved,
+    /// `Workgroup::encode`.
+    pub encode: fn(&mut Workgroup<'_>, skill: u32, mirrored: bool),
     /// `Workgroup::forward`.
     pub forward: fn(&mut Workgroup<'_>, skill: u32),
+    /// `Workgroup::boltzmann`.
+    pub boltzmann: fn(&mut Workgroup<'_>, children: u32, allowed: u32, inverse_temperature: f32) -> Boltzmann,
     /// `Workgroup::backward`.
     pub backward: fn(&mut Workgroup<'_>, skill: u32, child: u32, delta: f32, step_size: f32),
 }

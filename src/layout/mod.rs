@@ -37,6 +37,6 @@ pub use records::{
 pub use sensors::Input;
 pub use shape::SkillShape;
 pub use sizes::*;
-pub use state::{Agent, Episode, LearnerState, Moved, Robot};
+pub use state::{Agent, Boltzmann, Episode, LearnerState, Moved, Robot};
 pub use world::{Area, Segment, WorldUniform};
 pub use world_parts::WorldPart;

@@ -20,6 +20,16 @@ shared! {
         events: u32,
     }
 
+    /// What the Q-values say about the allowed children.
+    struct Boltzmann {
+        /// Greatest Q-value.
+        best: f32,
+        /// The child that has it; the first of several.
+        greedy: u32,
+        /// Sum of the workgroup's `weights`.
+        total: f32,
+    }
+
     /// A robot in a trial: its body, what it remembers, and what it is doing.
     struct Agent {
         /// Inches.

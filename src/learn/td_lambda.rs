@@ -142,10 +142,10 @@ impl Workgroup<'_> {
                 if self.params[s].backup == BACKUP_STEPS { choice_offered(choice) } else { choice_allowed(choice) };
             let allowed = mirror_mask(&self.skills[s], available, mirrored);
             self.load_step(step as usize);
-            self.encode(skill, mirrored);
+            (self.forms.encode)(self, skill, mirrored);
             (self.forms.forward)(self, skill);
             let inverse_temperature = self.inverse_temperature(skill, self.state.trial);
-            let found = self.boltzmann(self.skills[s].children, allowed, inverse_temperature);
+            let found = (self.forms.boltzmann)(self, self.skills[s].children, allowed, inverse_temperature);
             if open {
                 self.state.replay_open = 0;
                 self.state.next_best = found.best;

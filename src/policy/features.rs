@@ -12,6 +12,7 @@ use crate::policy::applicability::{high_level_applicable, high_level_room, high_
 
 impl Workgroup<'_> {
     /// Entry of the sonar table at word `table` for one ray of the record.
+    #[inline(always)]
     pub fn sonar_feature(&self, table: u32, ray: usize) -> f32 {
         f32::from_bits(self.tables[(table + self.record.observation.sonar_inches(ray)) as usize])
     }
@@ -52,6 +53,7 @@ impl Workgroup<'_> {
     }
 
     /// Turns the record, or what a mirror would show of it, into the inputs of a skill's nets.
+    #[inline(always)]
     pub fn encode(&mut self, skill: u32, mirrored: bool) {
         for group in 0..self.skills[skill as usize].groups as usize {
             let kind = self.skills[skill as usize].group_kind[group];

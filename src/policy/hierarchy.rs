@@ -16,7 +16,7 @@ impl Workgroup<'_> {
         if self.skills[n as usize].planned > 0 {
             self.planned_values(n);
         } else {
-            self.encode(n, self.skills[n as usize].mirrored == 1);
+            (self.forms.encode)(self, n, self.skills[n as usize].mirrored == 1);
             (self.forms.forward)(self, n);
         }
     }

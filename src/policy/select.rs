@@ -4,21 +4,10 @@
 //! Sets of children are bits: bit c stands for child c.
 
 use crate::env::workgroup::Workgroup;
-use crate::layout::MAX_CHILDREN;
 use crate::layout::choices::{POLICY_LEARNED, POLICY_RANDOM};
+use crate::layout::{Boltzmann, MAX_CHILDREN};
 use crate::math::functions::exponential;
 use crate::math::rng::unit;
-
-/// What the Q-values say about the allowed children.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Boltzmann {
-    /// Greatest Q-value.
-    pub best: f32,
-    /// The child that has it; the first of several.
-    pub greedy: u32,
-    /// Sum of the workgroup's `weights`.
-    pub total: f32,
-}
 
 impl Workgroup<'_> {
     /// Inverse temperature of a trial: it rises linearly over the first trials.
@@ -33,6 +22,7 @@ impl Workgroup<'_> {
     }
 
     /// Weighs the children: `weights` holds exponential(inverse temperature (Q - best)), 0 for those not allowed.
+    #[inline(always)]
     pub fn boltzmann(&mut self, children: u32, allowed: u32, inverse_temperature: f32) -> Boltzmann {
         let mut best = -2.0;
         let mut greedy = 0;
@@ -74,7 +64,7 @@ impl Workgroup<'_> {
         let choice = self.params[skill as usize].policy;
         let even = choice != POLICY_LEARNED;
         let children = self.skills[skill as usize].children;
-        let found = self.boltzmann(children, allowed, if even { 0.0 } else { inverse_temperature });
+        let found = (self.forms.boltzmann)(self, children, allowed, if even { 0.0 } else { inverse_temperature });
         let drawn = self.sample(found, word);
         let first = allowed.trailing_zeros();
         let learned = if greedy { found.greedy } else { drawn };

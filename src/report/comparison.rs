@@ -11,7 +11,6 @@ pub const SINGLE: &str = "monolithic";
 /// Arms with the same root skill.
 #[derive(Debug, Clone)]
 pub struct Comparison<'a> {
-    /// The root skill.
     pub skill: &'a SkillSummary,
     /// Arms with skills below it: [`MAIN`] first, or else in the order of the rows.
     pub hierarchical: Vec<&'a Series>,

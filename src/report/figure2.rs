@@ -3,12 +3,12 @@
 
 use super::comparison::Comparison;
 use super::figure::curves::{Curve, CurvePoint, axes};
-use super::figure::{Figure, PageSection, PlotArea};
+use super::figure::{Figure, PlotArea};
 use super::format::seeds;
 use super::learning_curves::{CurveMeasure, SUCCESS};
 use super::statistics::{BAND_RESAMPLES, Estimate, TABLE_RESAMPLES, mean, ratio};
 use super::summary::{Score, SeedScores, Series};
-use super::training::{TrainingCurve, TrainingWindow, TrialSums, WINDOW, of_series, pooled};
+use super::training::{TrainingCurve, TrainingWindow, WINDOW, of_series, pooled};
 use minijinja::{Value, context};
 use rayon::prelude::*;
 
@@ -28,11 +28,11 @@ pub fn draw(comparison: &Comparison<'_>, trainings: &[TrainingCurve]) -> Vec<Fig
         shown.into_par_iter().map(with_band).collect::<Vec<_>>()
     });
     let mut figures = Vec::new();
-    for (section, panels) in [(PageSection::Paper, as_paper), (PageSection::AllSeeds, all)] {
+    for (section, panels) in [("paper", as_paper), ("all seeds", all)] {
         // Both panels have the same axes, so that they can be compared.
         let (x, y) = axes(panels.iter().flatten(), None, ("trials", Y_TITLE), false);
         for (panel, curves) in panels.iter().enumerate().filter(|(_, curves)| !curves.is_empty()) {
-            let few = section == PageSection::Paper;
+            let few = section == "paper";
             let n = kinds[panel].first().map_or(0, |series| series.last().scores.len());
             let mut notes = vec![match few {
                 true => format!("Mean over the first n = {}; no interval.", seeds(PAPER_SEEDS.min(n))),
@@ -44,7 +44,7 @@ pub fn draw(comparison: &Comparison<'_>, trainings: &[TrainingCurve]) -> Vec<Fig
             }
             let figure = Figure {
                 name: format!("figure-2{}{}", ["a", "b"][panel], if few { "-paper" } else { "" }),
-                section: section.clone(),
+                section,
                 title: ["(a) without a hierarchy", "(b) with a hierarchy"][panel].into(),
                 subtitle: format!("Training: reward over steps of the last {WINDOW} trials."),
                 area: PlotArea::SMALL,
@@ -74,8 +74,8 @@ pub fn averages(comparison: &Comparison<'_>, trainings: &[TrainingCurve]) -> Vec
             arm => &training.arm,
             trials => format!("{} to {}", from + 1, training.trials()),
             seeds => sums.len(),
-            together => pooled(&sums, TrialSums::reward_and_steps, TABLE_RESAMPLES),
-            apart => pooled(&sums, TrialSums::ratios_and_trials, TABLE_RESAMPLES),
+            together => pooled(&sums, Score::reward_and_steps, TABLE_RESAMPLES),
+            apart => pooled(&sums, Score::ratios_and_trials, TABLE_RESAMPLES),
         }
     };
     spans.map(row).collect()
@@ -87,7 +87,7 @@ fn as_in_the_paper(series: &Series, trainings: &[TrainingCurve]) -> Vec<Curve> {
     let point = |x: u32, y: f64| CurvePoint { x: f64::from(x), y: Estimate::exact(y) };
     let window = |window: &TrainingWindow| {
         let shown = window.sums.iter().filter(|sums| first.contains(&sums.seed));
-        point(window.end, ratio(&shown.map(TrialSums::reward_and_steps).collect::<Vec<_>>()))
+        point(window.end, ratio(&shown.map(Score::reward_and_steps).collect::<Vec<_>>()))
     };
     let test = |test: &SeedScores| point(test.trials, mean(&test.values(Score::reward_per_step)[..first.len()]));
     let training = of_series(trainings, series).map(|training| training.windows.iter().map(window).collect());
@@ -99,7 +99,7 @@ fn as_in_the_paper(series: &Series, trainings: &[TrainingCurve]) -> Vec<Curve> {
 fn with_band(training: &TrainingCurve) -> Curve {
     let point = |window: &TrainingWindow| CurvePoint {
         x: f64::from(window.end),
-        y: pooled(&window.sums, TrialSums::reward_and_steps, BAND_RESAMPLES),
+        y: pooled(&window.sums, Score::reward_and_steps, BAND_RESAMPLES),
     };
     Curve::new(&training.arm, training.windows.iter().map(point).collect())
 }
@@ -154,7 +154,7 @@ fn over_cost(comparison: &Comparison<'_>, measure: &CurveMeasure) -> Figure {
     let (x, y) = axes(&curves, bound, (measure.x_title(), measure.y_title), measure.percent);
     let figure = Figure {
         name: format!("{}-by-{}", measure.file, if measure.against_actions { "actions" } else { "trials" }),
-        section: PageSection::EqualCost,
+        section: "equal cost",
         title: format!("{} {}", if measure.percent { "Success" } else { "Reinforcement" }, measure.heading),
         subtitle: measure.subtitle.into(),
         area: PlotArea::SMALL,

@@ -3,7 +3,7 @@
 use super::figure::axis::PlotAxis;
 use super::figure::color::{BLUE, Color, GREEN, GREY, INK, ORANGE, PALE, VERMILION, WHITE};
 use super::figure::svg::{Stroke, TextAnchor};
-use super::figure::{Figure, PageSection, PlotArea, Swatch};
+use super::figure::{Figure, PlotArea, Swatch};
 use super::format::file_word;
 use crate::run_folder::PlaceReading;
 use crate::world::{Light, Pose, ROBOT_RADIUS, Rect, World};
@@ -28,7 +28,7 @@ pub fn draw_all(world: &World, places: &[PlaceReading]) -> Vec<Figure> {
 /// Another floor plan of the run, small.
 pub fn draw_elsewhere(world: &World, file: &str) -> Figure {
     let name = file.trim_start_matches("worlds/").trim_end_matches(".toml");
-    Figure { name: format!("world-{}", file_word(name)), section: PageSection::Transfer, ..plan(world, false) }
+    Figure { name: format!("world-{}", file_word(name)), section: "transfer", ..plan(world, false) }
 }
 
 /// A floor without anything on it, large or small: axes in inches.
@@ -39,7 +39,7 @@ pub fn empty(world: &World, large: bool) -> Figure {
     let margin = MARGIN.max((narrowest - width * points) / 2.0);
     let axis = |length: f64| PlotAxis { range: (0.0, length), ..PlotAxis::default() };
     Figure {
-        section: PageSection::World,
+        section: "world",
         area: PlotArea { left: margin, right: margin, width: width * points, height: height * points, large },
         x: axis(width),
         y: axis(height),

@@ -123,26 +123,34 @@ fn code(text: &str) -> Value {
     Value::from_safe_string(text.split('`').enumerate().map(part).collect())
 }
 
-/// Gives templates the filters: `percent`, `points`, `fixed(digits)`, `signed(digits)`, `number`, `limit`, `seeds` and
-/// `code`; and `measured(success)` and `difference(success)` for what is success of one skill and return of another.
+fn as_percent(value: &Value) -> Result<String, Error> {
+    either(value, percent, share)
+}
+
+fn as_points(value: &Value) -> Result<String, Error> {
+    either(value, |bare| points(Estimate::exact(bare)), points)
+}
+
+fn as_fixed(value: &Value, digits: usize) -> Result<String, Error> {
+    either(value, |bare| format!("{bare:.digits$}"), |estimate| fixed(estimate, digits))
+}
+
+fn as_signed(value: &Value, digits: usize) -> Result<String, Error> {
+    either(value, |bare| format!("{bare:+.digits$}"), |estimate| signed(estimate, digits))
+}
+
+/// Gives templates the filters; `measured(success)` and `difference(success)` are for what is success of one skill and
+/// return of another.
 pub fn add_filters(environment: &mut Environment<'_>) {
-    let as_percent = |value: &Value| either(value, percent, share);
-    let as_points = |value: &Value| either(value, |bare| points(Estimate::exact(bare)), points);
-    let as_fixed = |value: &Value, digits: usize| {
-        either(value, |bare| format!("{bare:.digits$}"), |estimate| fixed(estimate, digits))
-    };
-    let as_signed = |value: &Value, digits: usize| {
-        either(value, |bare| format!("{bare:+.digits$}"), |estimate| signed(estimate, digits))
-    };
-    environment.add_filter("percent", move |value: &Value| as_percent(value));
-    environment.add_filter("points", move |value: &Value| as_points(value));
-    environment.add_filter("fixed", move |value: &Value, digits: usize| as_fixed(value, digits));
-    environment.add_filter("signed", move |value: &Value, digits: usize| as_signed(value, digits));
-    environment.add_filter("measured", move |value: &Value, success: bool| match success {
+    environment.add_filter("percent", as_percent);
+    environment.add_filter("points", as_points);
+    environment.add_filter("fixed", as_fixed);
+    environment.add_filter("signed", as_signed);
+    environment.add_filter("measured", |value: &Value, success: bool| match success {
         true => as_percent(value),
         false => as_fixed(value, 2),
     });
-    environment.add_filter("difference", move |value: &Value, success: bool| match success {
+    environment.add_filter("difference", |value: &Value, success: bool| match success {
         true => as_points(value),
         false => as_signed(value, 2),
     });

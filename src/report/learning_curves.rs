@@ -1,7 +1,7 @@
 //! Learning curves of each skill.
 
 use super::figure::curves::{Curve, CurvePoint, axes};
-use super::figure::{Figure, PageSection, PlotArea};
+use super::figure::{Figure, PlotArea};
 use super::format::{file_word, number, seeds};
 use super::statistics::{BAND_RESAMPLES, bootstrap, mean};
 use super::step_plot;
@@ -15,9 +15,7 @@ pub struct CurveMeasure {
     pub file: &'static str,
     /// What follows the skill in the figure's heading.
     pub heading: &'static str,
-    /// The line below the heading.
     pub subtitle: &'static str,
-    /// Title of the y axis.
     pub y_title: &'static str,
     /// Whether values are shares.
     pub percent: bool,
@@ -70,7 +68,6 @@ const UNENDING: [CurveMeasure; 1] = [CurveMeasure {
 }];
 
 impl CurveMeasure {
-    /// Title of the x axis.
     pub fn x_title(&self) -> &'static str {
         if self.against_actions { "executed actions" } else { "training trials" }
     }
@@ -125,7 +122,8 @@ fn curves_of(skill: &SkillSummary, measure: &CurveMeasure) -> Figure {
     let (x, y) = axes(&curves, bound, (measure.x_title(), measure.y_title), measure.percent);
     let figure = Figure {
         name: format!("{}-{}", measure.file, file_word(&skill.name)),
-        section: PageSection::Skill(skill.name.clone()),
+        section: "skill",
+        about: skill.name.clone(),
         title: format!("{}: {}", skill.name, measure.heading),
         subtitle: measure.subtitle.into(),
         area,
@@ -149,7 +147,8 @@ fn profile(skill: &SkillSummary) -> Figure {
     }
     let figure = Figure {
         name: format!("profile-{}", file_word(&skill.name)),
-        section: PageSection::Skill(skill.name.clone()),
+        section: "skill",
+        about: skill.name.clone(),
         title: format!("{}: performance profile", skill.name),
         subtitle: "Share of seeds whose success at the last test exceeds x.".into(),
         notes,

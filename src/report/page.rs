@@ -2,11 +2,9 @@
 
 use super::claims::Claim;
 use super::comparison::Comparison;
-use super::error::ReportError;
-use super::figure::PageSection;
 use super::format::{add_filters, median_trials, trials_by};
 use super::learning_curves::with_copies;
-use super::results::RunResults;
+use super::results::{ReportError, RunResults};
 use super::statistics::{
     SurvivalCurve, TABLE_RESAMPLES, TimeToEvent, bootstrap, interquartile_mean, mean, mean_of, paired_difference,
     share_below, wilson,
@@ -36,8 +34,9 @@ const TEMPLATES: [(&str, &str); 4] = [
 pub struct DrawnFigure {
     /// File name without its ending.
     pub name: String,
-    /// Where it stands.
-    pub section: PageSection,
+    pub section: &'static str,
+    /// The skill or the sweep's arm that the section is about, if it is about one.
+    pub about: String,
     /// The SVG document.
     pub svg: String,
 }
@@ -56,10 +55,12 @@ pub fn render(
     environment.set_undefined_behavior(UndefinedBehavior::Strict);
     environment.set_syntax(SyntaxConfig::builder().trim_blocks(true).keep_trailing_newline(true).build()?);
     add_filters(&mut environment);
-    let figures: Vec<(PageSection, Value)> = figures.iter().map(figure_part).collect();
-    environment.add_function("figures", move |kind: &str, name: Option<String>| -> Vec<Value> {
-        let section = section(kind, name.unwrap_or_default());
-        figures.iter().filter(|(own, _)| Some(own) == section.as_ref()).map(|(_, part)| part.clone()).collect()
+    let figures = figures.to_vec();
+    environment.add_function("figures", move |section: &str, about: Option<&str>| -> Vec<Value> {
+        let there = figures.iter().filter(|figure| (figure.section, &*figure.about) == (section, about.unwrap_or("")));
+        // Inline SVG needs no namespace, and the page then names no address at all.
+        let svg = |figure: &DrawnFigure| figure.svg.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
+        there.map(|figure| context! { name => &figure.name, svg => svg(figure) }).collect()
     });
     for (name, text) in TEMPLATES {
         environment.add_template(name, text)?;
@@ -71,33 +72,9 @@ pub fn render(
     ))
 }
 
-/// The part of the page that a template means.
-fn section(kind: &str, name: String) -> Option<PageSection> {
-    Some(match kind {
-        "sweep" => PageSection::Sweep(name),
-        "paper" => PageSection::Paper,
-        "all seeds" => PageSection::AllSeeds,
-        "equal cost" => PageSection::EqualCost,
-        "rooms" => PageSection::Rooms,
-        "trajectories" => PageSection::Trajectories,
-        "transfer" => PageSection::Transfer,
-        "skill" => PageSection::Skill(name),
-        "world" => PageSection::World,
-        _ => return None,
-    })
-}
-
-fn figure_part(figure: &DrawnFigure) -> (PageSection, Value) {
-    // Inline SVG needs no namespace, and the page then names no address at all.
-    let svg = figure.svg.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
-    (figure.section.clone(), context! { name => &figure.name, svg => svg })
-}
-
 fn context(run: &FinishedRun, results: &RunResults) -> Value {
     let provenance = &run.manifest().provenance;
     let config: toml::Table = run.config().parse().unwrap_or_default();
-    let note = |(name, note): (&String, &String)| context! { name => name, text => note };
-    let meaning = |(name, text): (String, String)| context! { name => name, text => text };
     let summary = &results.summary;
     let comparison = Comparison::new(summary);
     let mut skills: Vec<&SkillSummary> = summary.skills.iter().collect();
@@ -115,7 +92,7 @@ fn context(run: &FinishedRun, results: &RunResults) -> Value {
         commit => &provenance.commit,
         started => &provenance.started,
         finished => &provenance.finished,
-        notes => provenance.notes.iter().map(note).collect::<Vec<_>>(),
+        notes => Value::from_pairs(&provenance.notes),
         seeds => seed_list(&provenance.seeds),
         warnings => cautions(summary),
         sweep => results.swept.as_ref().map(|swept| sweep::context(swept, &folder_name(run), run.dir())),
@@ -123,7 +100,7 @@ fn context(run: &FinishedRun, results: &RunResults) -> Value {
         comparison => comparison.as_ref().map(|comparison| comparison_part(comparison, results)),
         transfer => transfer::table(main),
         transfer_others => transfer::table(others),
-        alterations => transfer::meanings(&config).into_iter().map(meaning).collect::<Vec<_>>(),
+        alterations => transfer::meanings(&config),
         skills => skills.into_iter().map(skill_part).collect::<Vec<_>>(),
         criterion => CRITERION,
         resamples => TABLE_RESAMPLES,
@@ -142,7 +119,7 @@ fn claim_row(claim: &Claim) -> Value {
         number => claim.number,
         title => claim.title,
         says => claim.says,
-        figures => claim.figures.clone(),
+        figures => &claim.figures,
         seeds => claim.seeds,
         verdict => claim.verdict.words(),
         why => &claim.why,

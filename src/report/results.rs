@@ -1,15 +1,31 @@
-//! What a run's tables say, summed and judged.
+//! What a run holds, read, summed and judged.
 
 use super::claims::{self, Claim};
-use super::error::ReportError;
-use super::summary::{self, DivergedLearner, Summary};
+use super::summary::{self, Summary};
 use super::sweep::SweepResults;
 use super::training::{self, TrainingCurve};
-use crate::run_folder::{Divergence, FinishedRun, RecordError, tables};
+use crate::config::ConfigError;
+use crate::run_folder::tables::{self, parse_evaluations, parse_trials};
+use crate::run_folder::{Divergence, FinishedRun, PlaceReading, RecordError, Trajectory, folder};
+use crate::world::{World, load};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// What tables and figures of learning are made from.
+/// An error in making a report.
+#[derive(Debug, thiserror::Error)]
+pub enum ReportError {
+    /// The run folder cannot be read or written.
+    #[error(transparent)]
+    Record(#[from] RecordError),
+    /// The run folder's floor plan cannot be read: another version of skilltree made the run.
+    #[error("{0}\nnote: the run was made by another version of skilltree: use that one")]
+    World(#[from] ConfigError),
+    /// A template failed.
+    #[error("the page could not be written: {0:#}\nhint: this is a bug in skilltree: please report it")]
+    Page(#[from] minijinja::Error),
+}
+
+/// What tables and figures are made from.
 #[derive(Debug)]
 pub struct RunResults {
     /// The tests; of a run with a sweep, those of each arm's first point.
@@ -20,46 +36,59 @@ pub struct RunResults {
     pub claims: Vec<Claim>,
     /// What a sweep measured at all points.
     pub swept: Option<SweepResults>,
+    /// Floor plans by file: the config's own, and those of other arms and alterations.
+    pub worlds: BTreeMap<String, World>,
+    /// Example trials.
+    pub trajectories: Vec<Trajectory>,
+    /// What the sensors read at the named places.
+    pub places: Vec<PlaceReading>,
 }
 
 impl RunResults {
-    /// Reads the tables of a run.
+    /// Reads the files of a run.
     ///
     /// # Errors
-    /// If one of them is damaged.
+    /// If one of them is damaged or, as a floor plan, of another version of skilltree.
     pub fn read(run: &FinishedRun) -> Result<Self, ReportError> {
-        let (names, rows) = table(run, tables::EVALUATIONS, tables::parse_evaluations)?;
+        let (names, rows) = read(run, tables::EVALUATIONS, parse_evaluations)?;
         let seeds = &run.manifest().provenance.seeds;
-        let summary = summary::summarise(&names, &rows, seeds, &diverged(run)?);
+        let failures: Vec<Divergence> = run.json()?.unwrap_or_default();
+        let mut summary = summary::summarise(&names, &rows, seeds, &failures);
         let swept = run.json()?.map(|sweep| SweepResults::new(sweep, &summary, seeds));
-        let summary = if swept.is_some() { summary.first_points() } else { summary };
-        let (names, mut rows) = table(run, tables::TRIALS, tables::parse_trials)?;
+        let (names, mut rows) = read(run, tables::TRIALS, parse_trials)?;
         if swept.is_some() {
-            let shown = |arm: &String| {
+            summary = summary.first_points();
+            let first = |arm: &str| {
                 let mut series = summary.skills.iter().flat_map(|skill| &skill.series);
-                (arm.clone(), series.find(|series| series.arm == *arm).map(|series| series.point))
+                series.find(|series| series.arm == arm).map(|series| series.point)
             };
-            let points: BTreeMap<String, Option<u32>> = names.arms.iter().map(shown).collect();
-            rows.retain(|row| points[&row.arm] == Some(row.point));
+            rows.retain(|row| first(&row.arm) == Some(row.point));
         }
         let trainings = training::summarise(&summary, &names, &rows);
-        let claims = claims::judge(&summary, &trainings);
-        Ok(Self { summary, trainings, claims, swept })
+        let mut worlds = BTreeMap::new();
+        let is_world = |file: &&String| *file == folder::WORLD || file.starts_with("worlds/");
+        for file in run.manifest().files.keys().filter(is_world) {
+            let text = run.text(file)?.unwrap_or_default();
+            worlds.insert(file.clone(), load::parse(&text, &run.dir().join(file))?);
+        }
+        Ok(Self {
+            claims: claims::judge(&summary, &trainings),
+            trajectories: run.json()?.unwrap_or_default(),
+            places: run.json()?.unwrap_or_default(),
+            summary,
+            trainings,
+            swept,
+            worlds,
+        })
     }
 }
 
-/// A table that a run may lack.
-fn table<T: Default>(
+/// The content of a file that a run may lack.
+fn read<T: Default>(
     run: &FinishedRun,
     file: &str,
     parse: impl Fn(Vec<u8>, &Path) -> Result<T, RecordError>,
 ) -> Result<T, ReportError> {
     let Some(bytes) = run.content(file)? else { return Ok(T::default()) };
     Ok(parse(bytes, &run.dir().join(file))?)
-}
-
-fn diverged(run: &FinishedRun) -> Result<Vec<DivergedLearner>, RecordError> {
-    let told = |Divergence { arm, point, seed, skill, trial, .. }| DivergedLearner { arm, point, seed, skill, trial };
-    let failures: Vec<Divergence> = run.json()?.unwrap_or_default();
-    Ok(failures.into_iter().map(told).collect())
 }

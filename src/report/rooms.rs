@@ -3,7 +3,7 @@
 use super::comparison::Comparison;
 use super::figure::axis::PlotAxis;
 use super::figure::curves::{Curve, CurvePoint};
-use super::figure::{Figure, PageSection, PlotArea};
+use super::figure::{Figure, PlotArea};
 use super::format::{file_word, seeds};
 use super::learning_curves::SUCCESS;
 use super::statistics::{BAND_RESAMPLES, TABLE_RESAMPLES, bootstrap, mean, mean_of, quantile};
@@ -31,7 +31,7 @@ pub fn draw(comparison: &Comparison<'_>, rooms: &[(usize, &str)]) -> Vec<Figure>
     let figure = |series: &Series| {
         let figure = Figure {
             name: format!("rooms-{}", file_word(&series.label)),
-            section: PageSection::Rooms,
+            section: "rooms",
             title: format!("{} by starting room", series.label),
             subtitle: SUCCESS.subtitle.into(),
             area: PlotArea::SMALL,

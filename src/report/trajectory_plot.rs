@@ -2,13 +2,16 @@
 
 use super::figure::color::{Color, INK, palette};
 use super::figure::svg::{Stroke, TextAnchor};
-use super::figure::{Figure, PageSection, Swatch};
+use super::figure::{Figure, Swatch};
 use super::floor_plan::{centre, empty, robot, solids, xy};
 use super::format::file_word;
 use crate::run_folder::{Trajectory, TrajectoryPoint};
 use crate::world::{Pose, World};
 use glam::Vec2;
+use std::collections::BTreeMap;
 
+/// Arms whose example trials are drawn.
+const ARMS: usize = 2;
 /// A stretch of the way begins with a dot, which shows turns on the spot too.
 const DOT: f64 = 2.6;
 /// Inches from a robot's centre to the word that marks it.
@@ -38,6 +41,21 @@ pub fn stretches(points: &[TrajectoryPoint]) -> Vec<DrivenStretch> {
     stretches
 }
 
+/// Draws the trials of the arms that lead the comparison, or of the first ones where those have none.
+pub fn draw_some(worlds: &BTreeMap<String, World>, trajectories: &[Trajectory], leaders: &[&str]) -> Vec<Figure> {
+    let mut arms: Vec<&str> = Vec::new();
+    for trajectory in trajectories {
+        if !arms.contains(&trajectory.arm.as_str()) {
+            arms.push(&trajectory.arm);
+        }
+    }
+    arms.sort_by_key(|arm| leaders.iter().position(|leader| leader == arm).unwrap_or(leaders.len()));
+    arms.truncate(ARMS);
+    let of_arm = |arm: &str| trajectories.iter().filter(|trajectory| trajectory.arm == arm).collect::<Vec<_>>();
+    let chosen = arms.into_iter().flat_map(of_arm);
+    chosen.filter_map(|trajectory| Some(draw(worlds.get(&trajectory.world)?, trajectory))).collect()
+}
+
 /// Draws the way of one trial.
 pub fn draw(world: &World, trajectory: &Trajectory) -> Figure {
     let Trajectory { arm, skill, place, seed, points, children, .. } = trajectory;
@@ -45,7 +63,7 @@ pub fn draw(world: &World, trajectory: &Trajectory) -> Figure {
     let end = if trajectory.achieved { "goal achieved" } else { "goal not achieved" };
     let mut figure = Figure {
         name: format!("trial-{}-{}", file_word(arm), file_word(place)),
-        section: PageSection::Trajectories,
+        section: "trajectories",
         title: format!("{arm}: {skill} from {place}"),
         subtitle: format!("{steps} steps, {end} (seed {seed})"),
         ..empty(world, false)

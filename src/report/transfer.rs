@@ -38,12 +38,12 @@ pub fn table(series: &[&Series]) -> Vec<Value> {
     pairs.par_iter().map(|(series, test)| row(series, test)).collect()
 }
 
-/// What each alteration alters, as the resolved config says it: name and text.
-pub fn meanings(config: &toml::Table) -> Vec<(String, String)> {
+/// What each alteration alters, as the resolved config says it: name and text of each.
+pub fn meanings(config: &toml::Table) -> Vec<Vec<String>> {
     let table = config.get("alter").and_then(toml::Value::as_table);
     let bare = |value: &toml::Value| {
         let text = value.to_string();
         text.strip_prefix("{ ").and_then(|text| text.strip_suffix(" }")).unwrap_or(&text).to_owned()
     };
-    table.into_iter().flatten().map(|(name, value)| (name.clone(), bare(value))).collect()
+    table.into_iter().flatten().map(|(name, value)| vec![name.clone(), bare(value)]).collect()
 }

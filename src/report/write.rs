@@ -1,10 +1,10 @@
 //! Makes the report of a run, and writes it into the run's folder.
 
-use super::all_figures;
-use super::error::ReportError;
-use super::figure::render_svg;
+use super::comparison::Comparison;
+use super::figure::{Figure, render_svg};
 use super::page::{self, DrawnFigure};
-use super::results::RunResults;
+use super::results::{ReportError, RunResults};
+use super::{figure2, floor_plan, learning_curves, rooms, sweep, trajectory_plot};
 use crate::run_folder::file_system::{FileSystem, OsFileSystem};
 use crate::run_folder::{FinishedRun, folder, writer};
 use rayon::prelude::*;
@@ -41,13 +41,34 @@ pub struct WrittenReport {
 /// If a file of the run is damaged.
 pub fn render(run: &FinishedRun) -> Result<RenderedReport, ReportError> {
     let results = RunResults::read(run)?;
-    let figures = all_figures::draw(run, &results)?.into_par_iter().map(|figure| {
+    let drawn = |figure: Figure| {
         let svg = render_svg(&figure);
-        DrawnFigure { name: figure.name, section: figure.section, svg }
-    });
-    let figures: Vec<DrawnFigure> = figures.collect();
+        DrawnFigure { name: figure.name, section: figure.section, about: figure.about, svg }
+    };
+    let figures: Vec<DrawnFigure> = draw(&results).into_par_iter().map(drawn).collect();
     let (page, summary) = page::render(run, &results, &figures)?;
     Ok(RenderedReport { figures, page, summary })
+}
+
+/// Draws everything that a run has figures for, in the order of the page.
+fn draw(results: &RunResults) -> Vec<Figure> {
+    let RunResults { summary, worlds, .. } = results;
+    let mut figures = results.swept.as_ref().map_or_else(Vec::new, sweep::draw);
+    if let Some(comparison) = Comparison::new(summary) {
+        figures.extend(figure2::draw(&comparison, &results.trainings));
+        figures.extend(figure2::equal_cost(&comparison));
+        figures.extend(rooms::draw(&comparison, &rooms::of(&comparison, &summary.rooms)));
+        let leaders: Vec<&str> = comparison.leaders().map(|series| series.arm.as_str()).collect();
+        figures.extend(trajectory_plot::draw_some(worlds, &results.trajectories, &leaders));
+    }
+    figures.extend(learning_curves::draw(summary));
+    for (file, world) in worlds {
+        match file == folder::WORLD {
+            true => figures.extend(floor_plan::draw_all(world, &results.places)),
+            false => figures.push(floor_plan::draw_elsewhere(world, file)),
+        }
+    }
+    figures
 }
 
 /// Writes `figures/*.svg` and `report.html` into a complete run folder.

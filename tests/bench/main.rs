@@ -7,8 +7,8 @@ use skilltree::backend::cpu::cpu_backend;
 use skilltree::backend::host::HostBackend;
 use skilltree::backend::{Backend, BackendError, Cohort, Stop, Test};
 use skilltree::bench::BenchError;
-use skilltree::bench::benchmarks::{BenchSizes, Benchmark, Decisions, HierarchyLearners, RobotSteps};
-use skilltree::bench::benchmarks::{Transitions, UpdateRule};
+use skilltree::bench::benchmarks::{BenchSizes, Benchmark, HierarchyLearners, UpdateRule};
+use skilltree::bench::benchmarks::{decisions, robot_steps, transitions};
 use skilltree::bench::embedded_configs::HIERARCHY;
 use skilltree::bench::executor::{Executor, ExecutorKind};
 use skilltree::bench::measure::measure;
@@ -88,7 +88,7 @@ impl Backend for Broken {
     }
 }
 
-fn beside_broken(benchmark: &dyn Benchmark, fault: Fault) -> Result<TaskReport, BenchError> {
+fn beside_broken(benchmark: &Benchmark<'_>, fault: Fault) -> Result<TaskReport, BenchError> {
     let sound = cpu_backend(1, None).expect("a thread");
     let sound = Executor::new("sound", ExecutorKind::Reference, 1, Box::new(sound));
     measure(benchmark, &mut [sound, broken(fault)], 1)
@@ -97,12 +97,11 @@ fn beside_broken(benchmark: &dyn Benchmark, fault: Fault) -> Result<TaskReport, 
 #[test]
 fn one_wrong_bit_leaves_no_rate() {
     let hierarchy = HierarchyLearners::new(HIERARCHY, &[], 2).expect("the built-in experiment");
-    let steps = RobotSteps::new(BenchSizes::TINY, 1).expect("robots");
-    let transitions = Transitions::new(BenchSizes::TINY, UpdateRule::ALL[0]).expect("learners");
-    let decisions = Decisions::new(&hierarchy, BenchSizes::TINY);
-    let cases: [(&dyn Benchmark, Fault); 3] =
-        [(&steps, Fault::Robot), (&transitions, Fault::Weight), (&decisions, Fault::Episode)];
-    for (benchmark, fault) in cases {
+    let steps = robot_steps(BenchSizes::TINY, 1).expect("robots");
+    let transitions = transitions(BenchSizes::TINY, UpdateRule::ALL[0]).expect("learners");
+    let decisions = decisions(&hierarchy, BenchSizes::TINY);
+    for (benchmark, fault) in [(steps, Fault::Robot), (transitions, Fault::Weight), (decisions, Fault::Episode)] {
+        let benchmark = &benchmark;
         let task = beside_broken(benchmark, Fault::None).expect("the same bytes");
         let [sound, other] = &task.rows[..] else { panic!("{task:?}") };
         let ratio = other.per_cpu_second.median / sound.per_cpu_second.median;
@@ -110,9 +109,9 @@ fn one_wrong_bit_leaves_no_rate() {
         assert!((told / ratio - 1.0).abs() < 1.0e-6 && sound.over_reference.is_none(), "{task:?}");
         match beside_broken(benchmark, fault) {
             Err(BenchError::Differs { work, right, .. }) => {
-                assert_eq!((work, right.as_str()), (benchmark.name(), "broken"));
+                assert_eq!((work, right.as_str()), (benchmark.name, "broken"));
             }
-            other => panic!("{}: {other:?}", benchmark.name()),
+            other => panic!("{}: {other:?}", benchmark.name),
         }
     }
 }

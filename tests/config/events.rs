@@ -53,7 +53,7 @@ fn a_skill_names_four_regions_at_most() {
     assert_eq!(roam.params.reward, reward);
     assert_eq!(roam.goal, 1 << RegionEvent::Left.number(0) | 1 << RegionEvent::Entered.number(1));
     read_again(&plan);
-    let error = load("in(d)").err().expect("five regions");
+    let error = load("in(d)").expect_err("five regions");
     println!("{error}");
     assert!(error.message().contains("one region more than the events of a skill can name"), "{error}");
     assert!(error.hint().contains("at most 4"), "{error}");
@@ -63,7 +63,7 @@ fn a_skill_names_four_regions_at_most() {
 fn lit_needs_a_light() {
     let config = "world = 'world.toml'\n[skill.roam]\ninputs = ['sonar']\nreward = { lit = 1 }\n";
     let dark = FLAT.replace("light = ", "# light = ");
-    let error = attempt_files(&[("config.toml", config), ("world.toml", &dark)]).0.err().expect("no light");
+    let error = attempt_files(&[("config.toml", config), ("world.toml", &dark)]).0.expect_err("no light");
     assert!(error.message().contains("`lit` cannot happen: the world `world` has no light"), "{error}");
     assert!(error.hint().contains("add light"), "{error}");
 }
@@ -100,7 +100,7 @@ fn altered_worlds_need_the_regions_of_the_root() {
         attempt_files(&files).0
     };
     assert!(files(nook).is_ok());
-    let error = files("").err().expect("no nook");
+    let error = files("").expect_err("no nook");
     println!("{error}");
     assert!(error.message().contains("the world `other` has no room or rectangle `nook`"), "{error}");
     assert!(error.hint().contains("`recharge`"), "{error}");

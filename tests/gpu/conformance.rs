@@ -57,7 +57,7 @@ fn kernels_compile_without_passthrough_but_are_not_exact() {
     let adapter = adapter::choose(None, true).expect("an adapter");
     let device = Device::open_as(&adapter, false).expect("it opens");
     for kernel in KERNELS {
-        Pipeline::new(&device, *kernel).unwrap_or_else(|error| panic!("{}: {error}", kernel.name));
+        Pipeline::new(&device, *kernel, &[]).unwrap_or_else(|error| panic!("{}: {error}", kernel.name));
     }
     let verdict = examine(&device).expect("it runs");
     assert!(!verdict.exact && verdict.reason.is_some());

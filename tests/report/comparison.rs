@@ -3,12 +3,12 @@
 use crate::close;
 use crate::hand_made_tables::HandMadeTables;
 use skilltree::report::comparison::{Comparison, median_actions, within};
-use skilltree::report::figure::{PageSection, render_svg};
+use skilltree::report::figure::render_svg;
 use skilltree::report::figure2;
 use skilltree::report::rooms::{self, low_quantile};
 use skilltree::report::statistics::{ratio, ratio_of, sorted};
 use skilltree::report::summary::{Score, Series};
-use skilltree::report::training::{TrialSums, pooled};
+use skilltree::report::training::pooled;
 use skilltree::report::trajectory_plot::{draw, stretches};
 use skilltree::report::transfer::differences;
 use skilltree::run_folder::{Trajectory, TrajectoryPoint};
@@ -37,19 +37,19 @@ fn windows_sum_the_roots_training_trials() {
     let windows = &trainings[0].windows;
     assert_eq!((trainings.len(), windows.iter().map(|window| window.end).collect::<Vec<_>>()), (1, vec![10, 20, 25]));
     let first = &windows[0].sums;
-    assert_eq!((first[0].steps, first[0].reward, first[0].collisions, first[0].trials), (1850, 100.0, 72, 10));
+    assert_eq!((first[0].steps, first[0].reward, first[0].collisions, first[0].episodes), (1850, 100.0, 72, 10));
     assert_eq!((first[1].steps, first[1].reward), (1000, 1000.0));
-    let together = pooled(first, TrialSums::reward_and_steps, 2000);
+    let together = pooled(first, Score::reward_and_steps, 2000);
     close(together.value, 1100.0 / 2850.0, 1e-12);
     // A resample of two seeds is one of them twice with probability 1/2.
     close(together.low, 100.0 / 1850.0, 1e-12);
     close(together.high, 1.0, 1e-12);
     // One trial of 2 per step, ten of 1.
-    close(pooled(first, TrialSums::ratios_and_trials, 0).value, 12.0 / 20.0, 1e-12);
+    close(pooled(first, Score::ratios_and_trials, 0).value, 12.0 / 20.0, 1e-12);
     let all = trainings[0].sums_by_seed(0);
-    assert_eq!((all[0].trials, all[0].steps, all[1].reward), (25, 24 * 200 + 50, 2500.0));
+    assert_eq!((all[0].episodes, all[0].steps, all[1].reward), (25, 24 * 200 + 50, 2500.0));
     close(
-        ratio(&trainings[0].sums_by_seed(20).iter().map(TrialSums::reward_and_steps).collect::<Vec<_>>()),
+        ratio(&trainings[0].sums_by_seed(20).iter().map(Score::reward_and_steps).collect::<Vec<_>>()),
         500.0 / 1500.0,
         1e-12,
     );
@@ -71,7 +71,7 @@ fn figure_2_has_a_panel_per_kind_of_arm() {
     assert!(render_svg(&drawings[2]).contains(">Sums over n = 2 seeds"));
     // Both panels can be compared.
     assert_eq!((&drawings[0].x, &drawings[0].y), (&drawings[1].x, &drawings[1].y));
-    assert_eq!(drawings.iter().filter(|drawing| drawing.section == PageSection::Paper).count(), 2);
+    assert_eq!(drawings.iter().filter(|drawing| drawing.section == "paper").count(), 2);
     let costs = figure2::equal_cost(&comparison);
     assert_eq!(costs.len(), 4);
     assert!(costs.iter().all(|figure| render_svg(figure).contains(">monolithic<")), "{:?}", costs[0]);

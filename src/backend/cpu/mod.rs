@@ -1,5 +1,5 @@
-//! The CPU backend: hot functions in the CPU's way ([`lanes`]), compiled for each instruction set and chosen where the
-//! program runs.
+//! The CPU backend: hot functions, most of them in the CPU's way ([`lanes`]), compiled for each instruction set and chosen
+//! where the program runs.
 //!
 //! They are plain arithmetic without fused operations, so the instruction set changes their speed and not their bytes.
 
@@ -8,10 +8,11 @@ pub mod lanes;
 use super::BackendError;
 use super::host::{HostBackend, HostForms, Vector};
 use crate::env::workgroup::{CohortData, HotForms, Workgroup};
-use crate::layout::{Moved, Noise, Robot};
+use crate::layout::{Boltzmann, Moved, Noise, Robot};
 use crate::math::rng::Stream;
 use bytemuck::Zeroable;
 use multiversion::multiversion;
+use multiversion::target::match_target;
 use std::hint::black_box;
 
 /// A CPU backend; see [`HostBackend::new`].
@@ -23,8 +24,12 @@ pub fn cpu_backend(threads: usize, iterations: Option<u32>) -> Result<HostBacken
 }
 
 /// The tuned forms.
-pub const CPU: HostForms =
-    HostForms { kind: "cpu", instructions, hot: HotForms { draw_step, observe, move_body, forward, backward }, step };
+pub const CPU: HostForms = HostForms {
+    kind: "cpu",
+    instructions,
+    hot: HotForms { draw_step, observe, move_body, encode, forward, boltzmann, backward },
+    step,
+};
 
 /// Compiles a function for each instruction set.
 ///
@@ -47,7 +52,10 @@ for_each_instruction_set! {
         lanes::observe::observe;
     fn move_body(group: &Workgroup<'_>, x: f32, y: f32, heading: f32, action: u32, slip: f32) -> Moved =
         lanes::contact::move_body;
+    fn encode(group: &mut Workgroup<'_>, skill: u32, mirrored: bool) = Workgroup::encode;
     fn forward(group: &mut Workgroup<'_>, skill: u32) = lanes::forward::forward;
+    fn boltzmann(group: &mut Workgroup<'_>, children: u32, allowed: u32, inverse_temperature: f32) -> Boltzmann =
+        Workgroup::boltzmann;
     fn backward(group: &mut Workgroup<'_>, skill: u32, child: u32, delta: f32, step_size: f32) =
         lanes::optimiser::backward;
     fn step_once(robots: &mut [Robot], shared: &CohortData) = lanes::step::step;
@@ -59,19 +67,12 @@ fn step(robots: &mut [Robot], shared: &CohortData, iterations: u32) {
     }
 }
 
+/// The instruction set chosen, in words.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
 fn instructions() -> &'static str {
-    #[cfg(target_arch = "x86_64")]
-    {
-        if is_x86_feature_detected!("avx512f")
-            && is_x86_feature_detected!("avx512vl")
-            && is_x86_feature_detected!("avx512dq")
-            && is_x86_feature_detected!("avx512bw")
-        {
-            return "AVX-512";
-        }
-        if is_x86_feature_detected!("avx2") {
-            return "AVX2";
-        }
+    match_target! {
+        "x86_64+avx512f+avx512vl+avx512dq+avx512bw" => "AVX-512",
+        "x86_64+avx2" => "AVX2",
+        _ => "baseline",
     }
-    "baseline"
 }

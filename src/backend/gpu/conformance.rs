@@ -5,12 +5,11 @@ use super::arithmetic_check::{ANSWER_WORDS, Answer, NAMES, QUESTION_WORDS, Quest
 use super::device::Device;
 use super::loop_limit::{self, BOUNDS, loop_limit};
 use super::pipeline::Pipeline;
-use super::source::{ARITHMETIC_CHECK, LOOP_LIMIT};
+use super::source::{ARITHMETIC_CHECK, Kernel, LOOP_LIMIT};
 use crate::backend::BackendError;
 use crate::backend::UNWRITTEN;
 use crate::layout::LANES;
 use crate::math::rng::philox;
-use bytemuck::Zeroable;
 
 /// Inputs of each function: enough that every shape known to be fused or re-associated shows it.
 pub const QUESTIONS: usize = 1 << 17;
@@ -36,7 +35,8 @@ pub fn examine(device: &Device) -> Result<Verdict, BackendError> {
     let questions = questions(QUESTIONS);
     let answers = ask(device, &questions)?;
     let mut verdict = compare(&questions, &answers);
-    let counts = count_turns(device)?;
+    let mut counts = [0; 3];
+    answer(device, LOOP_LIMIT, bytemuck::bytes_of(&BOUNDS), bytemuck::bytes_of_mut(&mut counts), 3)?;
     let expected = loop_limit(BOUNDS);
     if counts[2] != expected[2] {
         let message = format!("the driver ends loops after fewer than {} turns", loop_limit::SAFE_TURNS);
@@ -84,66 +84,65 @@ fn question(number: u32) -> Question {
 }
 
 /// What the device answers.
-///
-/// # Errors
-/// Where the device fails.
 pub fn ask(device: &Device, questions: &[Question]) -> Result<Vec<Answer>, BackendError> {
-    let pipeline = Pipeline::new(device, ARITHMETIC_CHECK)?;
-    let storage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
-    let asked = device.buffer(ARITHMETIC_CHECK.name, size_of_val(questions) as u64, storage)?;
     let mut answers = vec![[UNWRITTEN; ANSWER_WORDS]; questions.len()];
-    let answered = device.buffer(ARITHMETIC_CHECK.name, size_of_val(&answers[..]) as u64, storage)?;
-    device.upload(ARITHMETIC_CHECK.name, &asked, bytemuck::cast_slice(questions))?;
-    device.upload(ARITHMETIC_CHECK.name, &answered, bytemuck::cast_slice(&answers))?;
-    let bind_group = pipeline.bind(device, &[&asked, &answered]);
-    pipeline.dispatch(device, &bind_group, (questions.len() / LANES) as u32, 1)?;
-    device.download(ARITHMETIC_CHECK.name, &answered, bytemuck::cast_slice_mut(&mut answers))?;
+    let (asked, answered) = (bytemuck::cast_slice(questions), bytemuck::cast_slice_mut(&mut answers));
+    answer(device, ARITHMETIC_CHECK, asked, answered, (questions.len() / LANES) as u32)?;
     Ok(answers)
 }
 
-/// Compares a device's answers with Rust's, bit by bit.
-pub fn compare(questions: &[Question], answers: &[Answer]) -> Verdict {
-    let mut verdict = Verdict { exact: true, reason: None, subnormals: true, loop_budget: None };
-    let mut differing = [0_usize; ANSWER_WORDS];
-    let mut first = None;
-    for (group, (asked, found)) in
-        questions.as_chunks::<LANES>().0.iter().zip(answers.as_chunks::<LANES>().0).enumerate()
-    {
-        for (lane, (wanted, found)) in arithmetic_check(asked).iter().zip(found).enumerate() {
-            for word in 0..ANSWER_WORDS {
-                if wanted[word] != found[word] {
-                    differing[word] += 1;
-                    if NAMES[word] == SUBNORMAL {
-                        verdict.subnormals = false;
-                    } else {
-                        first.get_or_insert((group * LANES + lane, word, wanted[word], found[word]));
-                    }
-                }
+/// Lets `groups` workgroups of a kernel with two buffers turn what is asked into answers.
+fn answer(device: &Device, kernel: Kernel, asked: &[u8], answers: &mut [u8], groups: u32) -> Result<(), BackendError> {
+    let pipeline = Pipeline::new(device, kernel, &[])?;
+    let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
+    let asked = device.filled(kernel.name, asked, 0, usage)?;
+    let answered = device.filled(kernel.name, answers, 0, usage)?;
+    let submission = pipeline.submit(device, &pipeline.bind(device, &[&asked, &answered]), (groups, 1));
+    device.wait(kernel.name, Some(submission))?;
+    device.download(kernel.name, &answered, answers)
+}
+
+/// One function or shape of which some answers are not Rust's.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ShapeDifference {
+    /// Its name.
+    pub name: &'static str,
+    /// How many answers differ.
+    pub count: usize,
+    /// The first input of those.
+    pub input: usize,
+    /// Rust's answer there.
+    pub wanted: u32,
+    /// The device's.
+    pub found: u32,
+}
+
+/// Compares a device's answers with Rust's, bit by bit: what differs, function by function.
+pub fn differences(questions: &[Question], answers: &[Answer]) -> Vec<ShapeDifference> {
+    let mut differing = [None::<ShapeDifference>; ANSWER_WORDS];
+    let groups = questions.as_chunks::<LANES>().0.iter().flat_map(arithmetic_check);
+    for (input, (wanted, found)) in groups.zip(answers).enumerate() {
+        for (word, name) in NAMES.into_iter().enumerate() {
+            let (wanted, found) = (wanted[word], found[word]);
+            if wanted != found {
+                let first = ShapeDifference { name, count: 0, input, wanted, found };
+                differing[word].get_or_insert(first).count += 1;
             }
         }
     }
-    if let Some((number, word, wanted, found)) = first {
-        verdict.exact = false;
-        verdict.reason = Some(format!(
-            "`{}` differs on {} of {} inputs, first at input {number}: {found:#010x} instead of {wanted:#010x}",
-            NAMES[word],
-            differing[word],
-            questions.len()
-        ));
-    }
-    verdict
+    differing.into_iter().flatten().collect()
 }
 
-/// The states that the canary's loops reach on the device.
-fn count_turns(device: &Device) -> Result<[u32; 3], BackendError> {
-    let pipeline = Pipeline::new(device, LOOP_LIMIT)?;
-    let storage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
-    let bounds = device.buffer(LOOP_LIMIT.name, size_of_val(&BOUNDS) as u64, storage)?;
-    let mut counts = <[u32; 3]>::zeroed();
-    let counted = device.buffer(LOOP_LIMIT.name, size_of_val(&counts) as u64, storage)?;
-    device.upload(LOOP_LIMIT.name, &bounds, bytemuck::bytes_of(&BOUNDS))?;
-    let bind_group = pipeline.bind(device, &[&bounds, &counted]);
-    pipeline.dispatch(device, &bind_group, 3, 1)?;
-    device.download(LOOP_LIMIT.name, &counted, bytemuck::bytes_of_mut(&mut counts))?;
-    Ok(counts)
+/// What follows from a device's answers.
+pub fn compare(questions: &[Question], answers: &[Answer]) -> Verdict {
+    let (flushed, wrong): (Vec<_>, Vec<_>) =
+        differences(questions, answers).into_iter().partition(|shape| shape.name == SUBNORMAL);
+    let reason = wrong.iter().min_by_key(|shape| shape.input).map(|shape| {
+        let ShapeDifference { name, count, input, wanted, found } = shape;
+        let of = questions.len();
+        format!(
+            "`{name}` differs on {count} of {of} inputs, first at input {input}: {found:#010x} instead of {wanted:#010x}"
+        )
+    });
+    Verdict { exact: reason.is_none(), reason, subnormals: flushed.is_empty(), loop_budget: None }
 }

@@ -2,7 +2,7 @@
 
 use crate::backend::BackendError;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError, mpsc};
 use std::time::Duration;
 
 /// A device that has not answered for this long is lost. The first dispatch of a pipeline compiles it.
@@ -104,6 +104,21 @@ impl Device {
         self.sound(kernel).map(|()| buffer)
     }
 
+    /// Creates a buffer that begins with these bytes and has room for `least`.
+    ///
+    /// # Errors
+    /// Where the driver has no memory for it.
+    pub fn filled(
+        &self,
+        kernel: &'static str,
+        bytes: &[u8],
+        least: usize,
+        usage: wgpu::BufferUsages,
+    ) -> Result<wgpu::Buffer, BackendError> {
+        let buffer = self.buffer(kernel, bytes.len().max(least) as u64, usage)?;
+        self.upload(kernel, &buffer, bytes).map(|()| buffer)
+    }
+
     /// Waits until a submission is done, or all are. What fails here stays a fault of the device: of other
     /// submissions that are on their way nothing is known then.
     ///
@@ -125,9 +140,6 @@ impl Device {
     }
 
     /// Copies bytes to the start of a buffer.
-    ///
-    /// # Errors
-    /// Where the device fails.
     pub fn upload(&self, kernel: &'static str, buffer: &wgpu::Buffer, bytes: &[u8]) -> Result<(), BackendError> {
         let mut offset = 0;
         for chunk in bytes.chunks(CHUNK as usize) {
@@ -142,9 +154,6 @@ impl Device {
     }
 
     /// Copies the start of a buffer to memory.
-    ///
-    /// # Errors
-    /// Where the device fails.
     pub fn download(&self, kernel: &'static str, buffer: &wgpu::Buffer, into: &mut [u8]) -> Result<(), BackendError> {
         if into.is_empty() {
             return Ok(());
@@ -161,20 +170,13 @@ impl Device {
             let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             encoder.copy_buffer_to_buffer(buffer, offset, &staging, 0, bytes);
             self.queue.submit([encoder.finish()]);
-            let mapped = Arc::new(Mutex::new(None));
-            let answer = Arc::clone(&mapped);
-            staging.map_async(wgpu::MapMode::Read, 0..bytes, move |result| {
-                *answer.lock().unwrap_or_else(PoisonError::into_inner) = Some(result);
-            });
+            let (sender, answer) = mpsc::channel();
+            staging.map_async(wgpu::MapMode::Read, 0..bytes, move |result| drop(sender.send(result)));
             self.wait(kernel, None)?;
             // Only the callback proves that the copy was made: polls have been seen to return early.
-            let answered = mapped.lock().unwrap_or_else(PoisonError::into_inner).take();
             let failed = |message: String| BackendError::Device { kernel, message };
-            match answered {
-                Some(Ok(())) => {}
-                Some(Err(error)) => return Err(failed(error.to_string())),
-                None => return Err(failed("the results did not come back".to_owned())),
-            }
+            let answered = answer.try_recv().map_err(|_| failed("the results did not come back".to_owned()))?;
+            answered.map_err(|error| failed(error.to_string()))?;
             let view = staging.get_mapped_range(0..bytes).map_err(|error| failed(error.to_string()))?;
             chunk.copy_from_slice(&view);
             drop(view);

@@ -52,9 +52,6 @@ impl<'a> Flight<'a> {
 
     /// Submits a dispatch of `size` workgroups along both axes. Then waits for the oldest if as many are in flight as
     /// may be: the uniform is written in the queue, so that those on their way keep theirs.
-    ///
-    /// # Errors
-    /// Where the device fails.
     pub fn send(
         &mut self,
         group: &wgpu::BindGroup,
@@ -74,9 +71,6 @@ impl<'a> Flight<'a> {
     }
 
     /// Waits until nothing is in flight.
-    ///
-    /// # Errors
-    /// Where the device fails.
     pub fn land(&mut self) -> Result<(), BackendError> {
         while !self.sent.is_empty() {
             self.wait()?;

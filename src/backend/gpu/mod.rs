@@ -1,7 +1,8 @@
 //! The GPU backend: the kernels on any adapter of Vulkan, Metal or DX12.
 //!
 //! Learners stay in the device's memory. The host only says how far to go, one dispatch ahead, waits, with a deadline,
-//! and looks at the states now and then.
+//! and looks at the states now and then. A function here that does not say when it returns an error does so where the
+//! device fails.
 
 pub mod adapter;
 pub mod arithmetic_check;
@@ -11,14 +12,14 @@ pub mod dispatch_size;
 pub mod in_flight;
 pub mod loop_limit;
 pub mod pipeline;
-pub mod pipeline_cache;
-pub mod run_evaluation;
-pub mod shards;
+mod pipeline_cache;
+mod run_evaluation;
+mod shards;
 pub mod source;
 pub mod spirv;
 pub mod workgroup_weights;
 
-use super::{Backend, BackendError, Cohort, Stop, Test, fresh};
+use super::{Backend, BackendError, Cohort, Stop, Test, fresh, nothing_loaded};
 use crate::env::workgroup::CohortData;
 use crate::layout::{Dispatch, Episode, LearnerState, Robot, TRIAL_WORDS};
 use bytemuck::Zeroable;
@@ -79,10 +80,6 @@ struct Loaded {
     bindings: Vec<wgpu::BindGroup>,
     dispatch: wgpu::Buffer,
     rounds: Rounds,
-}
-
-fn nothing_loaded() -> BackendError {
-    BackendError::Device { kernel: TRAIN.name, message: "no cohort is loaded".to_owned() }
 }
 
 impl GpuBackend {
@@ -190,13 +187,13 @@ impl Backend for GpuBackend {
     fn load(&mut self, cohort: Cohort) -> Result<(), BackendError> {
         // The old cohort's memory is free before the new one's is taken.
         self.loaded = None;
-        self.advance.hold(wanted(&cohort).into_iter().filter(|words| *words <= self.held).collect());
+        self.advance.wanted = wanted(&cohort).into_iter().filter(|words| *words <= self.held).collect();
         let dispatch = self.uniform(TRAIN.name)?;
         let (pipeline, governor) = self.advance.ready(&self.device)?;
         let turns = quantum_turns(&cohort.shared, holders(&cohort, pipeline.held()));
         let most = ceiling(self.verdict.loop_budget, turns);
         governor.set_ceiling(most);
-        self.evaluate.set_ceiling(most);
+        self.evaluate.governor.set_ceiling(most);
         let common = Common::new(&self.device, TRAIN.name, &cohort.shared)?;
         let shards = shards::upload(&self.device, &cohort, self.shard)?;
         let bindings = shards
@@ -322,12 +319,11 @@ impl Backend for GpuBackend {
         let uniform = self.uniform(STEP.name)?;
         let common = Common::new(&self.device, STEP.name, shared)?;
         let most = ceiling(self.verdict.loop_budget, step_turns(shared));
-        self.step.set_ceiling(most);
+        self.step.governor.set_ceiling(most);
         let (pipeline, governor) = self.step.ready(&self.device)?;
         for robots in robots.chunks_mut(dispatch_size::GROUPS as usize) {
             let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
-            let buffer = self.device.buffer(STEP.name, size_of_val(robots) as u64, usage)?;
-            self.device.upload(STEP.name, &buffer, bytemuck::cast_slice(robots))?;
+            let buffer = self.device.filled(STEP.name, bytemuck::cast_slice(robots), 0, usage)?;
             let binding = pipeline.bind(&self.device, &[&uniform, &common.world, &common.tables, &buffer]);
             let mut flight = Flight::new(&self.device, (pipeline, governor), &uniform, &mut self.traffic);
             let mut first = 0;

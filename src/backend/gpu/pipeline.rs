@@ -17,19 +17,11 @@ pub struct Pipeline {
 }
 
 impl Pipeline {
-    /// Compiles a kernel for a device.
-    ///
-    /// # Errors
-    /// Where the driver refuses it.
-    pub fn new(device: &Device, kernel: Kernel) -> Result<Self, BackendError> {
-        Self::holding(device, kernel, &[])
-    }
-
     /// Compiles a kernel for a device, with workgroup memory for the largest of some numbers of weights that fits.
     ///
     /// # Errors
     /// Where the driver refuses it.
-    pub fn holding(device: &Device, kernel: Kernel, wanted: &[u32]) -> Result<Self, BackendError> {
+    pub fn new(device: &Device, kernel: Kernel, wanted: &[u32]) -> Result<Self, BackendError> {
         let failed = |message: String| BackendError::Device { kernel: kernel.name, message };
         let wgsl = kernel.wgsl();
         let checked = check(&wgsl).map_err(failed)?;
@@ -110,25 +102,13 @@ impl Pipeline {
     /// Dispatches workgroups along both axes. It is done when the submission is.
     pub fn submit(&self, device: &Device, bind_group: &wgpu::BindGroup, (x, y): (u32, u32)) -> wgpu::SubmissionIndex {
         let mut encoder = device.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        {
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                label: Some(self.kernel.name),
-                timestamp_writes: None,
-            });
-            pass.set_pipeline(&self.pipeline);
-            pass.set_bind_group(0, bind_group, &[]);
-            pass.dispatch_workgroups(x, y, 1);
-        }
+        let descriptor = wgpu::ComputePassDescriptor { label: Some(self.kernel.name), timestamp_writes: None };
+        let mut pass = encoder.begin_compute_pass(&descriptor);
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, bind_group, &[]);
+        pass.dispatch_workgroups(x, y, 1);
+        drop(pass);
         device.queue.submit([encoder.finish()])
-    }
-
-    /// Dispatches workgroups and waits until they are done.
-    ///
-    /// # Errors
-    /// Where the device fails.
-    pub fn dispatch(&self, device: &Device, bind_group: &wgpu::BindGroup, x: u32, y: u32) -> Result<(), BackendError> {
-        let submission = self.submit(device, bind_group, (x, y));
-        device.wait(self.kernel.name, Some(submission))
     }
 }
 

@@ -8,18 +8,19 @@ use crate::backend::BackendError;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
-/// See the module. Drivers take up to many seconds to compile, so that what cohorts in turn hold is compiled once each.
+/// A kernel in use. Drivers take up to many seconds to compile, so that what cohorts in turn hold is compiled once each.
 #[derive(Debug)]
-pub struct Stage {
+pub(super) struct Stage {
     kernel: Kernel,
-    wanted: Vec<u32>,
+    /// Numbers of weights of which the largest that fits is held from the next use on.
+    pub(super) wanted: Vec<u32>,
     pipelines: HashMap<Vec<u32>, Pipeline>,
-    governor: Governor,
+    pub(super) governor: Governor,
 }
 
 impl Stage {
     /// A kernel whose dispatches have `iterations` iterations, if given.
-    pub fn new(kernel: Kernel, iterations: Option<u32>) -> Self {
+    pub(super) fn new(kernel: Kernel, iterations: Option<u32>) -> Self {
         Self { kernel, wanted: Vec::new(), pipelines: HashMap::new(), governor: Governor::new(iterations, 1) }
     }
 
@@ -27,31 +28,21 @@ impl Stage {
     ///
     /// # Errors
     /// Where the driver refuses it.
-    pub fn ready(&mut self, device: &Device) -> Result<(&Pipeline, &mut Governor), BackendError> {
+    pub(super) fn ready(&mut self, device: &Device) -> Result<(&Pipeline, &mut Governor), BackendError> {
         let pipeline = match self.pipelines.entry(self.wanted.clone()) {
             Entry::Occupied(made) => made.into_mut(),
-            Entry::Vacant(place) => place.insert(Pipeline::holding(device, self.kernel, &self.wanted)?),
+            Entry::Vacant(place) => place.insert(Pipeline::new(device, self.kernel, &self.wanted)?),
         };
         Ok((pipeline, &mut self.governor))
     }
 
-    /// Numbers of weights of which the largest that fits is held from now on.
-    pub fn hold(&mut self, wanted: Vec<u32>) {
-        self.wanted = wanted;
-    }
-
     /// Words of a workgroup's memory that hold weights.
-    pub fn held(&self) -> u32 {
+    pub(super) fn held(&self) -> u32 {
         self.pipelines.get(&self.wanted).map_or(0, Pipeline::held)
     }
 
-    /// Most iterations of a dispatch.
-    pub fn set_ceiling(&mut self, ceiling: u32) {
-        self.governor.set_ceiling(ceiling);
-    }
-
     /// Takes another text in place of the kernel of its name.
-    pub fn replace(&mut self, kernel: Kernel) {
+    pub(super) fn replace(&mut self, kernel: Kernel) {
         if self.kernel.name == kernel.name {
             self.kernel = kernel;
             self.pipelines.clear();

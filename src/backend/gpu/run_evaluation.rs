@@ -15,7 +15,7 @@ const LONGEST: u32 = 1 << 16;
 ///
 /// # Errors
 /// Where the device fails, or a trial does not end.
-pub fn finish(
+pub(super) fn finish(
     device: &Device,
     mut flight: Flight<'_>,
     (binding, results): (&wgpu::BindGroup, &wgpu::Buffer),

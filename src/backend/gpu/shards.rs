@@ -20,15 +20,11 @@ const SPARE: u64 = 512 << 20;
 
 /// Buffers that all learners read.
 #[derive(Debug)]
-pub struct Common {
-    /// The floor plan, a uniform.
-    pub world: wgpu::Buffer,
-    /// Segment lists, regions, tables.
-    pub tables: wgpu::Buffer,
-    /// Shapes of the skills.
-    pub skills: wgpu::Buffer,
-    /// Taught lessons.
-    pub bank: wgpu::Buffer,
+pub(super) struct Common {
+    pub(super) world: wgpu::Buffer,
+    pub(super) tables: wgpu::Buffer,
+    pub(super) skills: wgpu::Buffer,
+    pub(super) bank: wgpu::Buffer,
 }
 
 impl Common {
@@ -36,12 +32,9 @@ impl Common {
     ///
     /// # Errors
     /// Where the device has no room.
-    pub fn new(device: &Device, kernel: &'static str, shared: &CohortData) -> Result<Self, BackendError> {
+    pub(super) fn new(device: &Device, kernel: &'static str, shared: &CohortData) -> Result<Self, BackendError> {
         let world: &WorldUniform = &shared.floor.plan;
-        let buffer = |bytes: &[u8], least: usize, usage| {
-            let buffer = device.buffer(kernel, bytes.len().max(least) as u64, usage)?;
-            device.upload(kernel, &buffer, bytes).map(|()| buffer)
-        };
+        let buffer = |bytes: &[u8], least, usage| device.filled(kernel, bytes, least, usage);
         Ok(Self {
             world: buffer(bytemuck::bytes_of(world), 0, BufferUsages::UNIFORM)?,
             tables: buffer(bytemuck::cast_slice(&shared.tables), 4, BufferUsages::STORAGE)?,
@@ -53,19 +46,13 @@ impl Common {
 
 /// Some learners' buffers.
 #[derive(Debug)]
-pub struct Shard {
-    /// Which learners of the cohort.
-    pub learners: Range<usize>,
-    /// Their params.
-    pub params: wgpu::Buffer,
-    /// Their states.
-    pub states: wgpu::Buffer,
-    /// Their nets.
-    pub nets: wgpu::Buffer,
-    /// Their lessons.
-    pub lessons: wgpu::Buffer,
-    /// Their trial tables.
-    pub rows: wgpu::Buffer,
+pub(super) struct Shard {
+    pub(super) learners: Range<usize>,
+    pub(super) params: wgpu::Buffer,
+    pub(super) states: wgpu::Buffer,
+    pub(super) nets: wgpu::Buffer,
+    pub(super) lessons: wgpu::Buffer,
+    pub(super) rows: wgpu::Buffer,
 }
 
 /// Words of a cohort's vector that belong to some learners.
@@ -75,10 +62,8 @@ fn part(learners: &Range<usize>, stride: usize) -> Range<usize> {
 
 impl Shard {
     fn new(device: &Device, cohort: &Cohort, learners: Range<usize>) -> Result<Self, BackendError> {
-        let buffer = |bytes: &[u8]| {
-            let buffer = device.buffer(COHORT, bytes.len() as u64, BufferUsages::STORAGE | BufferUsages::COPY_SRC)?;
-            device.upload(COHORT, &buffer, bytes).map(|()| buffer)
-        };
+        let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
+        let buffer = |bytes: &[u8]| device.filled(COHORT, bytes, 0, usage);
         Ok(Self {
             params: buffer(bytemuck::cast_slice(&cohort.params[part(&learners, cohort.skills)]))?,
             states: buffer(bytemuck::cast_slice(&cohort.states[learners.clone()]))?,
@@ -90,19 +75,13 @@ impl Shard {
     }
 
     /// Reads the states back.
-    ///
-    /// # Errors
-    /// Where the device fails.
-    pub fn read_cursors(&self, device: &Device, cohort: &mut Cohort) -> Result<(), BackendError> {
+    pub(super) fn read_cursors(&self, device: &Device, cohort: &mut Cohort) -> Result<(), BackendError> {
         let states = &mut cohort.states[self.learners.clone()];
         device.download(COHORT, &self.states, bytemuck::cast_slice_mut(states))
     }
 
     /// Reads everything back that kernels write.
-    ///
-    /// # Errors
-    /// Where the device fails.
-    pub fn read(&self, device: &Device, cohort: &mut Cohort) -> Result<(), BackendError> {
+    pub(super) fn read(&self, device: &Device, cohort: &mut Cohort) -> Result<(), BackendError> {
         self.read_cursors(device, cohort)?;
         let nets = &mut cohort.nets[part(&self.learners, cohort.nets_stride)];
         device.download(COHORT, &self.nets, bytemuck::cast_slice_mut(nets))?;
@@ -117,7 +96,7 @@ impl Shard {
 ///
 /// # Errors
 /// [`BackendError::NoRoom`] if not even one fits.
-pub fn fitting(device: &Device, bytes_per_learner: usize) -> Result<usize, BackendError> {
+pub(super) fn fitting(device: &Device, bytes_per_learner: usize) -> Result<usize, BackendError> {
     // A software device's memory is the host's.
     let (most, device) = if is_software(&device.info) { (64, None) } else { (16_384, Some(CARD)) };
     let most = memory::fitting(device, 1.0, bytes_per_learner, most)?;
@@ -129,7 +108,7 @@ pub fn fitting(device: &Device, bytes_per_learner: usize) -> Result<usize, Backe
 ///
 /// # Errors
 /// [`BackendError::TooLarge`] where a learner exceeds a buffer, or the cohort the memory.
-pub fn upload(device: &Device, cohort: &Cohort, shard: usize) -> Result<Vec<Shard>, BackendError> {
+pub(super) fn upload(device: &Device, cohort: &Cohort, shard: usize) -> Result<Vec<Shard>, BackendError> {
     let learners = cohort.states.len();
     let too_large = |message: String| BackendError::TooLarge { learners, message };
     let limits = device.device.limits();

@@ -13,12 +13,7 @@ mod robot_steps;
 mod tensor;
 
 use super::{BenchError, make_folder, write_file};
-use safetensors::tensor::TensorView;
-use serde_json::{Map, Value};
-use std::collections::HashMap;
-use std::fmt::Write as _;
 use std::path::Path;
-use tensor::ExportTensor;
 
 /// Learners of `replay.safetensors`, unless told otherwise.
 pub const LEARNERS: u32 = 256;
@@ -29,38 +24,11 @@ pub const LEARNERS: u32 = 256;
 /// Where a file cannot be written, or two executors leave different bytes.
 pub fn export(folder: &Path, learners: u32) -> Result<(), BenchError> {
     make_folder(folder)?;
-    let (walk, numbers) = robot_steps::robot_steps()?;
-    write(&folder.join("simulate.safetensors"), &walk, &numbers)?;
-    let (replay, params) = replay::replay(learners)?;
-    write(&folder.join("replay.safetensors"), &replay, &params)?;
-    let readme = include_str!("README.md")
-        .replace("{simulate}", &table(&walk, &numbers))
-        .replace("{replay}", &table(&replay, &params));
+    let simulate = robot_steps::robot_steps()?;
+    simulate.write(&folder.join("simulate.safetensors"))?;
+    let replay = replay::replay(learners)?;
+    replay.write(&folder.join("replay.safetensors"))?;
+    let readme =
+        include_str!("README.md").replace("{simulate}", &simulate.table()).replace("{replay}", &replay.table());
     write_file(&folder.join("README.md"), readme.as_bytes())
-}
-
-/// Writes one file. The metadata has one entry: with several, their order would change from run to run.
-fn write(path: &Path, tensors: &[ExportTensor], numbers: &Map<String, Value>) -> Result<(), BenchError> {
-    let failed = |message: String| BenchError::Tensors { path: path.to_owned(), message };
-    let mut views = Vec::with_capacity(tensors.len());
-    for tensor in tensors {
-        let view = TensorView::new(tensor.dtype, tensor.shape.clone(), &tensor.bytes);
-        views.push((tensor.name, view.map_err(|error| failed(format!("`{}`: {error}", tensor.name)))?));
-    }
-    let metadata = HashMap::from([("skilltree".to_owned(), Value::Object(numbers.clone()).to_string())]);
-    let bytes = safetensors::serialize(views, Some(metadata)).map_err(|error| failed(error.to_string()))?;
-    write_file(path, &bytes)
-}
-
-/// The tensors and numbers of a file, for the README.
-fn table(tensors: &[ExportTensor], numbers: &Map<String, Value>) -> String {
-    let mut text = String::from("| tensor | shape | type | unit | meaning |\n|---|---|---|---|---|\n");
-    for ExportTensor { name, dtype, shape, unit, meaning, .. } in tensors {
-        let _ = writeln!(text, "| `{name}` | {shape:?} | {dtype:?} | {unit} | {meaning} |");
-    }
-    text.push_str("\nMetadata, JSON under the key `skilltree`:\n\n");
-    for (name, value) in numbers {
-        let _ = writeln!(text, "- `{name}` = {value}");
-    }
-    text
 }

@@ -1,6 +1,6 @@
 //! Tensors of `replay.safetensors`.
 
-use super::tensor::{ExportTensor, PASSES, TensorText, object};
+use super::tensor::ExportTensors;
 use crate::backend::Cohort;
 use crate::bench::benchmarks::UpdateRule;
 use crate::bench::executor::open_cpu;
@@ -11,32 +11,27 @@ use crate::kernels::plain::PLAIN;
 use crate::layout::{LANES, LearnerState};
 use crate::learn::lesson::{LESSON_STEPS, choice_child};
 use bytemuck::Zeroable;
-use serde_json::{Map, Value, json};
+use serde_json::json;
 
-/// The layers of a net as it begins.
-const INITIAL: [TensorText; 4] = [
-    ("initial.hidden.weight", "", "before any replay: weight of each input in each hidden unit"),
-    ("initial.hidden.bias", "", "before any replay"),
-    ("initial.output.weight", "", "before any replay: weight of each hidden unit"),
-    ("initial.output.bias", "", "before any replay"),
+/// Passes over each learner's lessons.
+const PASSES: u32 = 30;
+/// The layers of a net, as most programs name them.
+const LAYERS: [&str; 4] = ["hidden.weight", "hidden.bias", "output.weight", "output.bias"];
+/// What they are before any replay.
+const INITIAL: [&str; 4] = [
+    "before any replay: weight of each input in each hidden unit",
+    "before any replay",
+    "before any replay: weight of each hidden unit",
+    "before any replay",
 ];
 /// The same after one pass.
-const ONCE: [TensorText; 4] = [
-    ("once.hidden.weight", "", "after one pass over the lessons"),
-    ("once.hidden.bias", "", "after one pass"),
-    ("once.output.weight", "", "after one pass"),
-    ("once.output.bias", "", "after one pass"),
-];
+const ONCE: [&str; 4] = ["after one pass over the lessons", "after one pass", "after one pass", "after one pass"];
 /// The same after all passes.
-const EXPECTED: [TensorText; 4] = [
-    ("expected.hidden.weight", "", "after all passes over the lessons"),
-    ("expected.hidden.bias", "", "after all passes"),
-    ("expected.output.weight", "", "after all passes"),
-    ("expected.output.bias", "", "after all passes"),
-];
+const EXPECTED: [&str; 4] =
+    ["after all passes over the lessons", "after all passes", "after all passes", "after all passes"];
 
 /// What the learners learn from and what becomes of their nets, the same by every executor on the CPU.
-pub(super) fn replay(learners: u32) -> Result<(Vec<ExportTensor>, Map<String, Value>), BenchError> {
+pub(super) fn replay(learners: u32) -> Result<ExportTensors, BenchError> {
     let replay = TaughtReplay::new(&UpdateRule::ALL[0].plan(learners, PASSES)?)?;
     let (skill, shared, params) = (*replay.skill(), &replay.cohort.shared, *replay.params(0));
     let (bank, steps, inputs) = (skill.bank_lessons as usize, params.max_steps as usize, skill.inputs as usize);
@@ -64,31 +59,27 @@ pub(super) fn replay(learners: u32) -> Result<(Vec<ExportTensor>, Map<String, Va
         .map(|word| (word / skill.lesson_stride as usize) as i32)
         .collect();
     let once = TaughtReplay::new(&UpdateRule::ALL[0].plan(learners, 1)?)?;
-    let stages = [(INITIAL, nets(&replay.cohort)), (ONCE, replayed(&once)?), (EXPECTED, replayed(&replay)?)];
-
-    let (learners, children) = (learners as usize, skill.children as usize);
+    let mut file = ExportTensors::default();
     let lessons = params.lessons as usize;
-    let mut tensors = vec![
-        ExportTensor::codes(("lesson.length", "", "steps of each lesson in the bank"), &[bank], &length),
-        ExportTensor::floats(
-            ("lesson.input", "", "encoded observation before each step; 0 beyond the length"),
-            &[bank, steps, inputs],
-            &input,
-        ),
-        ExportTensor::codes(("lesson.child", "", "which child was taken: the net that learns"), &[bank, steps], &child),
-        ExportTensor::floats(("lesson.reward", "Q", "reward of the step, divided by 100"), &[bank, steps], &reward),
-        ExportTensor::codes(
-            ("lesson", "", "lessons of each learner, in the order of replay"),
-            &[learners, lessons],
-            &given,
-        ),
+    file.add("lesson.length", "", "steps of each lesson in the bank", &[bank], &length);
+    let meaning = "encoded observation before each step; 0 beyond the length";
+    file.add("lesson.input", "", meaning, &[bank, steps, inputs], &input);
+    file.add("lesson.child", "", "which child was taken: the net that learns", &[bank, steps], &child);
+    file.add("lesson.reward", "Q", "reward of the step, divided by 100", &[bank, steps], &reward);
+    let meaning = "lessons of each learner, in the order of replay";
+    file.add("lesson", "", meaning, &[learners as usize, lessons], &given);
+    let stages = [
+        ("initial", INITIAL, nets(&replay.cohort)),
+        ("once", ONCE, replayed(&once)?),
+        ("expected", EXPECTED, replayed(&replay)?),
     ];
-    for (names, nets) in &stages {
-        for (text, (shape, values)) in names.iter().zip(layers(nets, inputs)) {
-            tensors.push(ExportTensor::floats(*text, &[vec![learners, children], shape].concat(), &values));
+    for (stage, meanings, nets) in &stages {
+        for ((layer, meaning), (shape, values)) in LAYERS.iter().zip(meanings).zip(layers(nets, inputs)) {
+            let shape = [vec![learners as usize, skill.children as usize], shape].concat();
+            file.add(&format!("{stage}.{layer}"), "", meaning, &shape, &values);
         }
     }
-    let numbers = json!({
+    file.numbers = json!({
         "passes": PASSES,
         "transitions": replay.transitions() * u64::from(PASSES),
         "gamma": params.gamma,
@@ -100,7 +91,7 @@ pub(super) fn replay(learners: u32) -> Result<(Vec<ExportTensor>, Map<String, Va
         "target_clip": params.target_clip,
         "hidden": LANES,
     });
-    Ok((tensors, object(numbers)))
+    Ok(file)
 }
 
 /// The nets after all passes, by every executor on the CPU.

@@ -1,24 +1,68 @@
-//! How claims are judged, and what rules look at.
+//! What claims are judged from, and what is found.
 
-use super::verdict::{ClaimVerdict, Finding};
 use crate::report::comparison::MAIN;
 use crate::report::format::points;
 use crate::report::rooms;
-use crate::report::statistics::{Estimate, paired_difference};
+use crate::report::statistics::{Estimate, mean_of, paired_difference};
 use crate::report::summary::{Score, SeedScores, Series, Summary, paired};
 use crate::report::training::TrainingCurve;
 
-/// How a claim is judged.
-pub(super) struct ClaimRule {
-    pub(super) title: &'static str,
-    pub(super) says: &'static str,
-    /// When the claim holds, and when it does in part.
-    pub(super) rule: fn() -> String,
-    /// The finding, or what the run lacks for it.
-    pub(super) judge: fn(&Evidence<'_>) -> Result<Finding, String>,
+/// What became of a claim.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ClaimVerdict {
+    /// As the paper says.
+    Holds,
+    /// In part, as the rule says.
+    Partly,
+    /// Not as the paper says.
+    DoesNotHold,
+    /// The run lacks what the rule needs.
+    NotTested,
 }
 
-/// What rules look at.
+impl ClaimVerdict {
+    /// As the page prints it.
+    pub(in crate::report) fn words(self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::Partly => "partly",
+            Self::DoesNotHold => "does not hold",
+            Self::NotTested => "not tested here",
+        }
+    }
+
+    /// Holds if everything is as claimed, partly if something is.
+    pub(super) fn of(as_claimed: &[bool]) -> Self {
+        Self::surely(as_claimed.iter().all(|claimed| *claimed), as_claimed.contains(&true))
+    }
+
+    /// Holds if all of an interval is as claimed, partly if only the value is.
+    pub(super) fn surely(surely: bool, probably: bool) -> Self {
+        match (surely, probably) {
+            (true, _) => Self::Holds,
+            (false, true) => Self::Partly,
+            (false, false) => Self::DoesNotHold,
+        }
+    }
+
+    /// Holds from one limit on, partly from a lower one on.
+    pub(super) fn from_limits(value: f64, holds: f64, partly: f64) -> Self {
+        Self::surely(value >= holds, value >= partly)
+    }
+}
+
+/// What a run says of a claim.
+pub(super) struct Finding {
+    /// Numbers in words.
+    pub(super) figures: Vec<String>,
+    /// Seeds behind them.
+    pub(super) seeds: usize,
+    pub(super) verdict: ClaimVerdict,
+    /// When the claim holds, and when it does in part.
+    pub(super) rule: String,
+}
+
+/// What a run holds.
 pub(super) struct Evidence<'a> {
     pub(super) summary: &'a Summary,
     pub(super) trainings: &'a [TrainingCurve],
@@ -37,14 +81,14 @@ impl<'a> Evidence<'a> {
         self.summary.series(arm, skill).ok_or_else(lacking)
     }
 
-    /// Success of every seed that was tested from a room.
-    pub(super) fn success_from(&self, test: &SeedScores, room: &str) -> Result<Vec<f64>, String> {
+    /// Mean success over the seeds that were tested from a room.
+    pub(super) fn success_from(&self, test: &SeedScores, room: &str) -> Result<Estimate, String> {
         let index = self.summary.room(room).filter(|&room| !test.rooms[room].is_empty());
         let index = index.ok_or_else(|| format!("There are no tests from room {room}."))?;
-        Ok(rooms::success(test, index))
+        Ok(mean_of(&rooms::success(test, index)))
     }
 
-    /// Mean over seeds of what the main arm has more than another one, at their last tests.
+    /// What the main arm has more than another one, at their last tests.
     pub(super) fn main_minus(&self, arm: &str) -> Result<Lead, String> {
         let (main, other) = (self.root(MAIN)?, self.root(arm)?);
         Lead::new(&main.last().scores, &other.last().scores)
@@ -57,7 +101,6 @@ pub(super) fn at(series: &Series, trials: u32) -> Result<&SeedScores, String> {
 }
 
 /// How much more the seeds of one arm achieve than the same ones of another.
-#[derive(Debug, Clone, Copy)]
 pub(super) struct Lead {
     /// The mean difference of success.
     pub(super) by: Estimate,

@@ -30,7 +30,6 @@ impl PlotAxis {
         Self { title: title.into(), range, ticks, grid: false }
     }
 
-    /// The same with a grid.
     pub fn with_grid(self) -> Self {
         Self { grid: true, ..self }
     }

@@ -2,7 +2,6 @@
 
 use std::fmt;
 
-/// Red, green and blue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Color(pub u8, pub u8, pub u8);
 
@@ -19,18 +18,13 @@ pub const INK: Color = Color(0x22, 0x22, 0x22);
 pub const GREY: Color = Color(0x5c, 0x5c, 0x5c);
 /// Grid lines.
 pub const PALE: Color = Color(0xdd, 0xdd, 0xdd);
-/// Paper.
 pub const WHITE: Color = Color(0xff, 0xff, 0xff);
 
-/// Blue of [`palette`].
+/// Hues of [`palette`].
 pub const BLUE: Color = Color(0x00, 0x72, 0xb2);
-/// Vermilion of [`palette`].
 pub const VERMILION: Color = Color(0xd5, 0x5e, 0x00);
-/// Green of [`palette`].
 pub const GREEN: Color = Color(0x00, 0x9e, 0x73);
-/// Orange of [`palette`].
 pub const ORANGE: Color = Color(0xe6, 0x9f, 0x00);
-/// Sky blue of [`palette`].
 pub const SKY: Color = Color(0x56, 0xb4, 0xe9);
 
 /// Okabe and Ito's colors in turn, without the yellow that white paper swallows.

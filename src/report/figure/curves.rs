@@ -18,7 +18,6 @@ const LABEL_WIDTH: (f64, f64) = (60.0, 300.0);
 /// A point of a curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CurvePoint {
-    /// On the x axis.
     pub x: f64,
     /// A value over seeds, and its interval.
     pub y: Estimate,
@@ -27,7 +26,6 @@ pub struct CurvePoint {
 /// A curve: points by ascending x.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
-    /// What the legend calls it.
     pub label: String,
     /// At least one, but for a step curve.
     pub points: Vec<CurvePoint>,

@@ -10,5 +10,5 @@ mod plot;
 mod render;
 pub mod svg;
 
-pub use plot::{Figure, LegendEntry, PageSection, PlotArea, Swatch};
+pub use plot::{Figure, LegendEntry, PlotArea, Swatch};
 pub use render::{render_svg, spread};

@@ -7,46 +7,21 @@ use super::svg::{Stroke, SvgWriter, TextAnchor};
 /// Top of every plot.
 pub(super) const TOP: f64 = 64.0;
 
-/// A part of the page that has figures.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub enum PageSection {
-    /// The sweep of the arm of this name.
-    Sweep(String),
-    /// The paper's Figure 2, with its seven seeds.
-    Paper,
-    /// The same, with all seeds.
-    AllSeeds,
-    /// Learning curves over trials and over actions.
-    EqualCost,
-    /// Success by starting room.
-    Rooms,
-    /// Example trials.
-    Trajectories,
-    /// Floor plans of alterations and of arms elsewhere.
-    Transfer,
-    /// The skill of this name.
-    Skill(String),
-    /// The floor plan and the sensors.
-    #[default]
-    World,
-}
-
 /// A figure. Shapes are drawn in the units of its axes, with sizes in points; axes and area come first.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Figure {
     /// File name without its ending.
     pub name: String,
-    /// Where on the page it stands.
-    pub section: PageSection,
-    /// Its heading.
+    /// Where on the page it stands: the templates ask for it by this word.
+    pub section: &'static str,
+    /// In sections of one skill or of one arm's sweep, the name of that.
+    pub about: String,
     pub title: String,
     /// A line below the heading that says what was measured.
     pub subtitle: String,
     /// Size of the plot and of what surrounds it.
     pub area: PlotArea,
-    /// To the right.
     pub x: PlotAxis,
-    /// Upwards.
     pub y: PlotAxis,
     /// What shapes and colors mean.
     pub legend: Vec<LegendEntry>,
@@ -61,13 +36,9 @@ pub struct Figure {
 /// Size of a plot and of what surrounds it, in points.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct PlotArea {
-    /// Room left of the plot.
     pub left: f64,
-    /// Room right of the plot.
     pub right: f64,
-    /// Width of the plot.
     pub width: f64,
-    /// Height of the plot.
     pub height: f64,
     /// Whether the plot stands alone, with curves labelled at their ends, or beside others, with the legend below it.
     pub large: bool,
@@ -86,7 +57,6 @@ impl PlotArea {
         if self.large { 12 } else { 7 }
     }
 
-    /// Points of the heading's text.
     pub fn title_size(&self) -> f64 {
         if self.large { 18.0 } else { 15.0 }
     }
@@ -95,7 +65,6 @@ impl PlotArea {
 /// What a shape or a color means.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LegendEntry {
-    /// The words.
     pub label: String,
     /// What stands before them.
     pub swatch: Swatch,
@@ -108,13 +77,10 @@ pub struct LegendEntry {
 pub enum Swatch {
     /// Line and marker of a curve.
     Curve(usize),
-    /// A line.
     Line(Stroke),
     /// A line that begins with a dot.
     DottedLine(Color),
-    /// A square.
     Square(Color),
-    /// A disc.
     Disc(Color),
     /// A length in points, as a scale of a map.
     Length(f64),
@@ -146,28 +112,23 @@ impl Figure {
         self.polygon(&[a, (b.0, a.1), b, (a.0, b.1)], color, opacity);
     }
 
-    /// Adds a disc.
     pub fn disc(&mut self, place: (f64, f64), radius: f64, color: Color) {
         self.shapes.disc(self.at(place), radius, color);
     }
 
-    /// Adds a circle's outline.
     pub fn ring(&mut self, place: (f64, f64), radius: f64, stroke: Stroke) {
         self.shapes.ring(self.at(place), radius, stroke);
     }
 
-    /// Adds the marker of a curve.
     pub fn marker(&mut self, place: (f64, f64), curve: usize) {
         let at = self.at(place);
         marker(&mut self.shapes, at, curve);
     }
 
-    /// Adds text.
     pub fn text(&mut self, text: &str, place: (f64, f64), size: f64, color: Color, anchor: TextAnchor) {
         self.shapes.text(text, self.at(place), size, color, anchor);
     }
 
-    /// Adds a line to the legend.
     pub fn explain(&mut self, label: impl Into<String>, swatch: Swatch) {
         self.legend.push(LegendEntry { label: label.into(), swatch, end: (0.0, 0.0) });
     }

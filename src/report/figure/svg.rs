@@ -12,18 +12,14 @@ const CHARACTER: f64 = 0.52;
 /// Where text lies relative to its point. Vertically it is always centred on it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TextAnchor {
-    /// It begins there.
     Start,
-    /// It is centred there.
     Middle,
-    /// It ends there.
     End,
 }
 
 /// How a line is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stroke {
-    /// Its color.
     pub color: Color,
     /// Width in points.
     pub width: f64,
@@ -32,7 +28,6 @@ pub struct Stroke {
 }
 
 impl Stroke {
-    /// A line without gaps.
     pub fn solid(color: Color, width: f64) -> Self {
         Self { color, width, dash: 0.0 }
     }
@@ -45,7 +40,6 @@ pub struct SvgWriter {
 }
 
 impl SvgWriter {
-    /// Joins points by straight lines.
     pub fn line(&mut self, points: &[(f64, f64)], stroke: Stroke) {
         let Stroke { color, width, dash } = stroke;
         let dashes = if dash > 0.0 { format!(" stroke-dasharray=\"{dash}\"") } else { String::new() };
@@ -61,13 +55,11 @@ impl SvgWriter {
         self.push(format_args!("<polygon points=\"{}\" fill=\"{color}\"{opacity}/>", list(points)));
     }
 
-    /// Fills a disc.
     pub fn disc(&mut self, (x, y): (f64, f64), radius: f64, color: Color) {
         let (x, y, radius) = (rounded(x), rounded(y), rounded(radius));
         self.push(format_args!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" fill=\"{color}\"/>"));
     }
 
-    /// Draws a circle's outline.
     pub fn ring(&mut self, (x, y): (f64, f64), radius: f64, stroke: Stroke) {
         let (x, y, radius, Stroke { color, width, .. }) = (rounded(x), rounded(y), rounded(radius), stroke);
         self.push(format_args!(
@@ -96,7 +88,6 @@ impl SvgWriter {
         self.push(format_args!("</g>"));
     }
 
-    /// Adds the shapes of another document.
     pub fn append(&mut self, other: &Self) {
         self.body.push_str(&other.body);
     }

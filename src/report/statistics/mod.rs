@@ -5,13 +5,12 @@
 //! All functions give NaN for no values, and the same values always give the same interval.
 
 mod estimate;
-mod sample;
 mod selection;
 mod survival;
 
 pub use estimate::{
-    BAND_RESAMPLES, Estimate, TABLE_RESAMPLES, bootstrap, mean_of, paired_difference, ratio_of, wilson,
+    BAND_RESAMPLES, Estimate, Statistic, TABLE_RESAMPLES, bootstrap, interquartile_mean, mean, mean_of,
+    paired_difference, quantile, ratio, ratio_of, share_below, sorted, wilson,
 };
-pub use sample::{Statistic, interquartile_mean, mean, quantile, ratio, share_below, sorted};
 pub use selection::{Selection, select};
 pub use survival::{SurvivalCurve, SurvivalStep, TimeToEvent};

@@ -1,7 +1,6 @@
 //! Choosing the best of several candidates that were tried on the same seeds, and how sure the choice is.
 
-use super::estimate::{Estimate, TABLE_RESAMPLES, paired_difference};
-use super::sample::mean;
+use super::estimate::{Estimate, TABLE_RESAMPLES, mean, paired_difference};
 use crate::report::bootstrap_rng::resample;
 use rayon::prelude::*;
 
@@ -13,7 +12,6 @@ const ROUNDING: f64 = 1e-9;
 pub struct Selection {
     /// The candidate with the highest mean; the first one of equals.
     pub best: usize,
-    /// Mean of each candidate.
     pub means: Vec<f64>,
     /// For each candidate the mean of best minus candidate over pairs of the same seed.
     pub behind: Vec<Estimate>,

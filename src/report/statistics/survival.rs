@@ -14,7 +14,6 @@ pub struct TimeToEvent {
 /// The curve at a time at which at least one learner got there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SurvivalStep {
-    /// The time.
     pub time: f64,
     /// Learners that were still watched and had not got there before.
     pub at_risk: usize,
@@ -33,9 +32,7 @@ pub struct SurvivalStep {
 pub struct SurvivalCurve {
     /// By ascending time. Before the first step the share is 1.
     pub steps: Vec<SurvivalStep>,
-    /// Learners.
     pub count: usize,
-    /// Learners that got there.
     pub reached: usize,
     /// The longest time that any learner was watched: the curve ends there. 0 for none.
     pub end: f64,

@@ -1,6 +1,7 @@
 //! What the reader of a report must mind.
 
-use super::scores::{DivergedLearner, Summary};
+use super::scores::Summary;
+use crate::run_folder::Divergence;
 
 /// Warnings that a reader will read; a sweep may have one per point.
 const MOST_WARNINGS: usize = 12;
@@ -30,9 +31,9 @@ pub fn cautions(summary: &Summary) -> Vec<String> {
 }
 
 /// Names the learners that diverged, if there are any.
-fn diverged(diverged: &[DivergedLearner]) -> Option<String> {
-    let name = |learner: &DivergedLearner| {
-        let DivergedLearner { arm, point, seed, skill, trial } = learner;
+fn diverged(diverged: &[Divergence]) -> Option<String> {
+    let name = |learner: &Divergence| {
+        let Divergence { arm, point, seed, skill, trial, .. } = learner;
         format!("{arm}, point {point}, seed {seed} in trial {trial} of {skill}")
     };
     let named: Vec<String> = diverged.iter().take(MOST_NAMED).map(name).collect();

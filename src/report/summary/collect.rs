@@ -2,12 +2,11 @@
 
 use super::diverged;
 use super::scores::{
-    ArmSummary, DivergedLearner, PlannerBound, Score, ScoresByTest, SeedScores, Series, SeriesKey, SkillSummary,
-    Summary, TransferTest,
+    ArmSummary, PlannerBound, Score, ScoresByTest, SeedScores, Series, SeriesKey, SkillSummary, Summary, TransferTest,
 };
 use crate::report::format::seeds as seed_count;
 use crate::run_folder::tables::{PLANNER, TRAINED};
-use crate::run_folder::{EvaluationRow, Names};
+use crate::run_folder::{Divergence, EvaluationRow, Names};
 use std::collections::{BTreeMap, BTreeSet};
 
 impl From<&EvaluationRow> for Score {
@@ -22,6 +21,7 @@ impl From<&EvaluationRow> for Score {
             collisions: u64::from(sums.collisions),
             reward: sums.reward,
             returned: sums.returned,
+            ..Self::default()
         }
     }
 }
@@ -29,7 +29,7 @@ impl From<&EvaluationRow> for Score {
 /// Sums the rows and sorts them by skill, arm, sweep point, trials and seed. A test that some seeds of its series lack
 /// is left out, with a warning: an average over the seeds that happen to be there would mislead. Learners that diverged
 /// lack no test: those that they did not live to see count as failed.
-pub fn summarise(names: &Names, rows: &[EvaluationRow], seeds: &[u32], learners: &[DivergedLearner]) -> Summary {
+pub fn summarise(names: &Names, rows: &[EvaluationRow], seeds: &[u32], learners: &[Divergence]) -> Summary {
     let rooms = names.rooms.len();
     let mut sums: BTreeMap<SeriesKey, ScoresByTest> = BTreeMap::new();
     let mut transfer: BTreeMap<SeriesKey, ScoresByTest> = BTreeMap::new();

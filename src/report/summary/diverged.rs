@@ -1,37 +1,33 @@
 //! Learners that diverged count as failed: the tests that they did not live to see are filled in.
 
-use super::scores::{DivergedLearner, Score, ScoresBySeed, ScoresByTest, SeriesKey};
-use crate::run_folder::Names;
+use super::scores::{Score, ScoresByTest, SeriesKey};
+use crate::run_folder::{Divergence, Names};
 use std::collections::BTreeMap;
 
 /// Gives every learner that diverged the tests that it lacks: as many test trials as its peers had, none achieved, each
 /// as long as the longest mean trial of any test of the skill, without reward.
 pub(super) fn fill_in(
     names: &Names,
-    diverged: &[DivergedLearner],
+    diverged: &[Divergence],
     sums: &mut BTreeMap<SeriesKey, ScoresByTest>,
     transfer: &mut BTreeMap<SeriesKey, ScoresByTest>,
 ) {
-    let code = |name: &str| names.arms.iter().position(|arm| arm == name).map(|code| code as u32);
-    let of_series = |key: SeriesKey| {
-        let same = move |learner: &&DivergedLearner| code(&learner.arm) == Some(key.1) && learner.point == key.2;
-        diverged.iter().filter(same).map(|learner| learner.seed).collect::<Vec<u32>>()
-    };
-    let mut keys: Vec<SeriesKey> = diverged
-        .iter()
-        .filter_map(|learner| Some((code(&learner.arm)?, learner.point)))
-        .flat_map(|(arm, point)| (0..names.skills.len() as u32).map(move |skill| (skill, arm, point)))
-        .collect();
-    keys.sort_unstable();
-    keys.dedup();
-    for key in keys {
-        let failed = of_series(key);
-        let Some(schedule) = schedule(key, &failed, sums) else { continue };
-        let longest = longest(key.0, sums);
-        fill(sums.entry(key).or_default(), &schedule, &failed, longest);
-        if let Some(tests) = transfer.get_mut(&key) {
-            let schedule = tests.clone();
-            fill(tests, &schedule, &failed, longest);
+    let mut failed: BTreeMap<(u32, u32), Vec<u32>> = BTreeMap::new();
+    for learner in diverged {
+        if let Some(arm) = names.arms.iter().position(|arm| *arm == learner.arm) {
+            failed.entry((arm as u32, learner.point)).or_default().push(learner.seed);
+        }
+    }
+    for skill in 0..names.skills.len() as u32 {
+        for (&(arm, point), seeds) in &failed {
+            let key = (skill, arm, point);
+            let Some(schedule) = schedule(key, seeds, sums) else { continue };
+            let longest = longest(skill, sums);
+            fill(sums.entry(key).or_default(), &schedule, seeds, longest);
+            if let Some(tests) = transfer.get_mut(&key) {
+                let schedule = tests.clone();
+                fill(tests, &schedule, seeds, longest);
+            }
         }
     }
 }
@@ -58,12 +54,12 @@ fn fill(tests: &mut ScoresByTest, schedule: &ScoresByTest, failed: &[u32], longe
     for (&test, peers) in schedule {
         let Some(peer) = peers.values().next() else { continue };
         for &seed in failed {
-            let last = last_actions(tests, seed);
-            let seeds: &mut ScoresBySeed = tests.entry(test).or_default();
-            seeds.entry(seed).or_insert_with(|| {
+            let own = tests.values().filter_map(|seeds| seeds.get(&seed)).flatten();
+            let actions = own.map(|score| score.actions).max().unwrap_or(0);
+            tests.entry(test).or_default().entry(seed).or_insert_with(|| {
                 let fail = |of: &Score| Score {
                     seed,
-                    actions: last,
+                    actions,
                     episodes: of.episodes,
                     steps: (of.episodes as f64 * longest).round() as u64,
                     ..Score::default()
@@ -72,10 +68,4 @@ fn fill(tests: &mut ScoresByTest, schedule: &ScoresByTest, failed: &[u32], longe
             });
         }
     }
-}
-
-/// Actions that a learner had executed at its last test; 0 if it had none.
-fn last_actions(tests: &ScoresByTest, seed: u32) -> u32 {
-    let scores = tests.values().filter_map(|seeds| seeds.get(&seed)).flatten();
-    scores.map(|score| score.actions).max().unwrap_or(0)
 }

@@ -7,6 +7,4 @@ mod scores;
 
 pub use cautions::cautions;
 pub use collect::summarise;
-pub use scores::{
-    ArmSummary, DivergedLearner, PlannerBound, Score, SeedScores, Series, SkillSummary, Summary, TransferTest, paired,
-};
+pub use scores::{ArmSummary, PlannerBound, Score, SeedScores, Series, SkillSummary, Summary, TransferTest, paired};

@@ -1,26 +1,22 @@
 //! Scores of learners by skill, arm, sweep point, test and seed.
 
+use crate::run_folder::Divergence;
 use std::collections::BTreeMap;
 
-/// One score per room, by seed.
-pub(super) type ScoresBySeed = BTreeMap<u32, Vec<Score>>;
-/// The same by training trials, or by variant.
-pub(super) type ScoresByTest = BTreeMap<u32, ScoresBySeed>;
+/// One score per room, by training trials (or by variant) and seed.
+pub(super) type ScoresByTest = BTreeMap<u32, BTreeMap<u32, Vec<Score>>>;
 /// Skill, arm and sweep point.
 pub(super) type SeriesKey = (u32, u32, u32);
 
-/// Tests of one learner at one moment, summed.
+/// Trials of one learner, summed: those of a test, or successive ones in training.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Score {
-    /// Seed of the learner.
     pub seed: u32,
-    /// Primitive actions executed so far.
+    /// Primitive actions executed up to the test.
     pub actions: u32,
-    /// Test trials.
     pub episodes: u64,
-    /// Test trials that ended as achieved.
+    /// Trials that ended as achieved.
     pub successes: u64,
-    /// Primitive steps of all test trials.
     pub steps: u64,
     /// Steps with contact.
     pub collisions: u64,
@@ -28,15 +24,17 @@ pub struct Score {
     pub reward: f64,
     /// Sum of rewards, discounted from the start of each trial.
     pub returned: f64,
+    /// Sum over trials of reward per step of the trial; in training alone.
+    pub ratios: f64,
 }
 
 impl Score {
-    /// Share of test trials that ended as achieved. Episodes are never 0 in a summary.
+    /// Share of trials that ended as achieved. Episodes are never 0 in a summary.
     pub fn success(&self) -> f64 {
         self.successes as f64 / self.episodes as f64
     }
 
-    /// Mean steps of a test trial, failed ones counted with their step limit.
+    /// Mean steps of a trial, failed ones counted with their step limit.
     pub fn steps_per_trial(&self) -> f64 {
         self.steps as f64 / self.episodes as f64
     }
@@ -51,12 +49,27 @@ impl Score {
         self.reward / self.steps.max(1) as f64
     }
 
-    /// Mean discounted return of a test trial.
+    /// Mean discounted return of a trial.
     pub fn return_per_trial(&self) -> f64 {
         self.returned / self.episodes as f64
     }
 
-    pub(super) fn add(&mut self, other: &Self) {
+    /// What the mean reward per step of all trials together is made from.
+    pub fn reward_and_steps(&self) -> (f64, f64) {
+        (self.reward, self.steps as f64)
+    }
+
+    /// What the mean of each trial's own reward per step is made from.
+    pub fn ratios_and_trials(&self) -> (f64, f64) {
+        (self.ratios, self.episodes as f64)
+    }
+
+    /// What the mean rate of collisions is made from.
+    pub fn collisions_and_steps(&self) -> (f64, f64) {
+        (self.collisions as f64, self.steps as f64)
+    }
+
+    pub(in crate::report) fn add(&mut self, other: &Self) {
         self.seed = other.seed;
         self.actions = self.actions.max(other.actions);
         self.episodes += other.episodes;
@@ -65,6 +78,7 @@ impl Score {
         self.collisions += other.collisions;
         self.reward += other.reward;
         self.returned += other.returned;
+        self.ratios += other.ratios;
     }
 }
 
@@ -98,9 +112,7 @@ pub struct TransferTest {
 /// One skill of one arm at one sweep point, through training.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// The arm.
     pub arm: String,
-    /// The sweep point.
     pub point: u32,
     /// The arm's name, with the sweep point if there are several.
     pub label: String,
@@ -149,7 +161,6 @@ pub struct PlannerBound {
 /// All tests of one skill.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SkillSummary {
-    /// The skill's name.
     pub name: String,
     /// One series per arm and sweep point, in the order of the rows.
     pub series: Vec<Series>,
@@ -187,28 +198,11 @@ impl SkillSummary {
 /// What an arm learned.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ArmSummary {
-    /// Its name.
     pub name: String,
     /// The skill at the top of its tree.
     pub root: String,
     /// Whether there are other skills below.
     pub hierarchical: bool,
-}
-
-/// A learner of which some number stopped being finite, as `failures.json` lists it. It has no tests from then on, and
-/// they count as failed.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct DivergedLearner {
-    /// Its arm's name.
-    pub arm: String,
-    /// Its sweep point.
-    pub point: u32,
-    /// Its seed.
-    pub seed: u32,
-    /// The skill that it was learning.
-    pub skill: String,
-    /// The trial of the skill, counted from 0.
-    pub trial: u32,
 }
 
 /// Everything that the report computes from.
@@ -220,8 +214,8 @@ pub struct Summary {
     pub arms: Vec<ArmSummary>,
     /// In the order of the rows.
     pub skills: Vec<SkillSummary>,
-    /// Learners that diverged.
-    pub diverged: Vec<DivergedLearner>,
+    /// Learners of which some number stopped being finite. They have no tests from then on, which count as failed.
+    pub diverged: Vec<Divergence>,
     /// What the reader must know about gaps in the data.
     pub warnings: Vec<String>,
 }
@@ -236,24 +230,16 @@ impl Summary {
     pub fn first_points(&self) -> Self {
         let mut first = self.clone();
         for skill in &mut first.skills {
-            let mut shown: Vec<String> = Vec::new();
-            skill.series.retain(|series| {
-                let new = !shown.contains(&series.arm);
-                if new {
-                    shown.push(series.arm.clone());
-                }
-                new
-            });
+            // Points of an arm stand side by side.
+            skill.series.dedup_by(|later, earlier| later.arm == earlier.arm);
         }
         first
     }
 
-    /// A skill by its name.
     pub fn skill(&self, name: &str) -> Option<&SkillSummary> {
         self.skills.iter().find(|skill| skill.name == name)
     }
 
-    /// An arm by its name.
     pub fn arm(&self, name: &str) -> Option<&ArmSummary> {
         self.arms.iter().find(|arm| arm.name == name)
     }

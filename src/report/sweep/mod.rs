@@ -4,20 +4,13 @@
 //! An arm's root skill is judged by the last test: share of test trials achieved, or the discounted return of a skill
 //! that never ends. Points of one arm share their seeds, so they are compared seed by seed.
 
-mod distribution;
 mod figures;
-mod format;
-mod heatmap;
-mod main_effects;
+mod maps;
 mod rerun;
-mod response_surface;
-mod results;
-mod scatter;
+mod surface;
 mod tables;
 
 pub use figures::draw;
-pub use main_effects::{AxisLevel, MainEffect, levels, main_effect};
 pub use rerun::{Rerun, reruns};
-pub use response_surface::{CRITERION, ResponseSurface, SurfacePoint, surfaces};
-pub use results::SweepResults;
+pub use surface::{AxisLevel, CRITERION, MainEffect, ResponseSurface, SurfacePoint, SweepResults, main_effect};
 pub use tables::context;

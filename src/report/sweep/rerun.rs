@@ -1,8 +1,8 @@
 //! Learners worth a closer look, each with the command that trains it again, alone and with the same bytes.
 
-use super::response_surface::ResponseSurface;
-use super::results::SweepResults;
+use super::surface::{ResponseSurface, SweepResults};
 use crate::report::statistics::mean;
+use crate::run_folder::Divergence;
 use std::path::Path;
 
 /// Worst learners at the best point of each arm.
@@ -15,13 +15,9 @@ const DIVERGED: usize = 10;
 /// A learner and how to train it again.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rerun {
-    /// Why it is listed.
     pub reason: &'static str,
-    /// Its arm.
     pub arm: String,
-    /// Its point.
     pub point: u32,
-    /// Its seed.
     pub seed: u32,
     /// What it achieves at its last test, and the mean over the seeds of its point; none if it was never tested.
     pub values: Option<(f64, f64)>,
@@ -43,50 +39,48 @@ impl Rerun {
 
 /// The learners that the report lists: each once, for the first reason.
 pub fn reruns(swept: &SweepResults) -> Vec<Rerun> {
+    let diverged = swept.diverged.iter().take(DIVERGED).map(|Divergence { arm, point, seed, .. }| Rerun {
+        reason: "diverged",
+        arm: arm.clone(),
+        point: *point,
+        seed: *seed,
+        values: None,
+    });
+    let worst = swept.surfaces.iter().flat_map(|surface| {
+        let mut worst = learners(surface, &[surface.selection.best], "among the worst at the best point");
+        worst.sort_by(|(a, _), (b, _)| a.0.total_cmp(&b.0));
+        worst.into_iter().take(AT_BEST).map(|(_, learner)| learner)
+    });
+    let all = |surface: &ResponseSurface| (0..surface.points.len()).collect::<Vec<_>>();
+    let every =
+        swept.surfaces.iter().flat_map(|surface| learners(surface, &all(surface), "far below its point's mean"));
+    let mut far: Vec<_> = every.filter(|((value, mean), _)| value < mean).collect();
+    far.sort_by(|(a, _), (b, _)| (a.0 - a.1).total_cmp(&(b.0 - b.1)));
     let mut listed: Vec<Rerun> = Vec::new();
-    let mut list = |reason: &'static str, (arm, point, seed): (&str, u32, u32), values: Option<(f64, f64)>| {
-        if listed.iter().any(|known| (known.arm.as_str(), known.point, known.seed) == (arm, point, seed)) {
-            return false;
-        }
-        listed.push(Rerun { reason, arm: arm.to_owned(), point, seed, values });
-        true
+    let is_new = |listed: &[Rerun], learner: &Rerun| {
+        let same = |known: &Rerun| (&known.arm, known.point, known.seed) == (&learner.arm, learner.point, learner.seed);
+        !listed.iter().any(same)
     };
-    for learner in swept.diverged.iter().take(DIVERGED) {
-        list("diverged", (&learner.arm, learner.point, learner.seed), None);
-    }
-    for surface in &swept.surfaces {
-        let mut learners = learners(surface, &[surface.selection.best]);
-        learners.sort_by(|a, b| a.2.0.total_cmp(&b.2.0));
-        for (point, seed, values) in learners.into_iter().take(AT_BEST) {
-            list("among the worst at the best point", (&surface.arm, point, seed), Some(values));
+    for learner in diverged.chain(worst) {
+        if is_new(&listed, &learner) {
+            listed.push(learner);
         }
     }
-    let mut all: Vec<_> = swept
-        .surfaces
-        .iter()
-        .flat_map(|surface| {
-            let every: Vec<usize> = (0..surface.points.len()).collect();
-            learners(surface, &every).into_iter().map(move |learner| (surface, learner))
-        })
-        .filter(|(_, (_, _, (value, mean)))| value < mean)
-        .collect();
-    all.sort_by(|(_, a), (_, b)| (a.2.0 - a.2.1).total_cmp(&(b.2.0 - b.2.1)));
-    let mut far = 0;
-    for (surface, (point, seed, values)) in all {
-        if far == FURTHEST {
-            break;
-        }
-        far += usize::from(list("far below its point's mean", (&surface.arm, point, seed), Some(values)));
-    }
+    let far = far.into_iter().map(|(_, learner)| learner).filter(|learner| is_new(&listed, learner)).take(FURTHEST);
+    let far: Vec<Rerun> = far.collect();
+    listed.extend(far);
     listed
 }
 
-/// Number of the point, seed, and what the learner and its peers achieve.
-fn learners(surface: &ResponseSurface, points: &[usize]) -> Vec<(u32, u32, (f64, f64))> {
+/// The learners of some points, each with what it and its peers achieve.
+fn learners(surface: &ResponseSurface, points: &[usize], reason: &'static str) -> Vec<((f64, f64), Rerun)> {
     let of = |&point: &usize| {
         let point = &surface.points[point];
         let mean = mean(&point.values);
-        surface.seeds.iter().zip(&point.values).map(move |(&seed, &value)| (point.number, seed, (value, mean)))
+        surface.seeds.iter().zip(&point.values).map(move |(&seed, &value)| {
+            let (arm, values) = (surface.arm.clone(), (value, mean));
+            (values, Rerun { reason, arm, point: point.number, seed, values: Some(values) })
+        })
     };
     points.iter().flat_map(of).collect()
 }

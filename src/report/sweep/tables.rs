@@ -1,17 +1,13 @@
 //! The sweep's tables, for the page and the terminal.
 
 use super::figures::MOST_ARMS;
-use super::format::{axis_value, measure, point};
-use super::main_effects::{AxisLevel, levels, main_effect};
 use super::rerun::{Rerun, reruns};
-use super::response_surface::{CRITERION, ResponseSurface};
-use super::results::SweepResults;
+use super::surface::{AxisLevel, CRITERION, ResponseSurface, SweepResults, axis_value, main_effect};
 use crate::report::format::median_trials;
 use crate::report::rooms::low_quantile;
 use crate::report::statistics::{
     SurvivalCurve, TABLE_RESAMPLES, bootstrap, interquartile_mean, mean, mean_of, share_below, sorted,
 };
-use crate::run_folder::Sweep;
 use crate::run_folder::sweep::{Axis, Design, Scale};
 use minijinja::{Value, context};
 use rayon::prelude::*;
@@ -38,8 +34,8 @@ pub fn context(swept: &SweepResults, folder: &Path, here: &Path) -> Value {
         design => match sweep.design { Design::Grid => "a grid", Design::Random => "drawn at random" },
         points => sweep.points.len(),
         axes => sweep.axes.iter().map(axis_row).collect::<Vec<_>>(),
-        arms => shown.par_iter().map(|surface| arm_part(sweep, surface)).collect::<Vec<_>>(),
-        alone => alone.map(|surface| best(sweep, surface)).collect::<Vec<_>>(),
+        arms => shown.par_iter().map(|surface| arm_part(surface)).collect::<Vec<_>>(),
+        alone => alone.map(best).collect::<Vec<_>>(),
         lacking => swept.lacking.iter().take(MOST_POINTS).map(lacking).collect::<Vec<_>>(),
         more_lacking => swept.lacking.len().saturating_sub(MOST_POINTS),
         drawn => (shown.len() > MOST_ARMS).then_some(MOST_ARMS),
@@ -64,30 +60,30 @@ fn axis_row(axis: &Axis) -> Value {
     }
 }
 
-fn arm_part(sweep: &Sweep, surface: &ResponseSurface) -> Value {
+fn arm_part(surface: &ResponseSurface) -> Value {
     let means = &surface.selection.means;
     let mut order: Vec<usize> = (0..surface.points.len()).collect();
     order.sort_by(|&a, &b| means[b].total_cmp(&means[a]).then(a.cmp(&b)));
-    let rows: Vec<Value> = order.par_iter().take(MOST_POINTS).map(|&i| point_row(sweep, surface, i)).collect();
+    let rows: Vec<Value> = order.par_iter().take(MOST_POINTS).map(|&i| point_row(surface, i)).collect();
     let axes: Vec<(&str, Vec<AxisLevel>)> =
-        surface.axes.iter().map(|&axis| (sweep.axes[axis].label.as_str(), levels(sweep, surface, axis))).collect();
+        surface.axes.iter().map(|&axis| (surface.sweep.axes[axis].label.as_str(), surface.levels(axis))).collect();
     let effects = axes.iter().filter_map(|(label, levels)| effect_row(label, levels));
     let by_value = axes.iter().flat_map(|(label, levels)| levels.iter().map(move |level| level_row(label, level)));
     context! {
         skill => &surface.skill,
-        measure => measure(surface),
+        measure => surface.measure(),
         points => surface.points.len(),
         rows => rows,
         omitted => surface.points.len().saturating_sub(MOST_POINTS),
         effects => effects.collect::<Vec<_>>(),
         values => by_value.collect::<Vec<_>>(),
         worst => worst_seeds(surface),
-        ..best(sweep, surface),
+        ..best(surface),
     }
 }
 
 /// The best point of an arm, and how sure it is.
-fn best(sweep: &Sweep, surface: &ResponseSurface) -> Value {
+fn best(surface: &ResponseSurface) -> Value {
     let (selection, point_of_best) = (&surface.selection, surface.best());
     let seen = SurvivalCurve::new(&point_of_best.seen);
     context! {
@@ -96,8 +92,8 @@ fn best(sweep: &Sweep, surface: &ResponseSurface) -> Value {
         seeds => surface.seeds.len(),
         best => context! {
             number => point_of_best.number,
-            values => point(sweep, &surface.axes, point_of_best.number),
-            all_values => sweep.describe(point_of_best.number as usize),
+            values => surface.words(&surface.axes, selection.best),
+            all_values => surface.sweep.describe(point_of_best.number as usize),
             mean => mean_of(&point_of_best.values),
             chosen => selection.chosen[selection.best],
             undecided => selection.undecided(),
@@ -108,12 +104,12 @@ fn best(sweep: &Sweep, surface: &ResponseSurface) -> Value {
     }
 }
 
-fn point_row(sweep: &Sweep, surface: &ResponseSurface, i: usize) -> Value {
+fn point_row(surface: &ResponseSurface, i: usize) -> Value {
     let (point_here, selection) = (&surface.points[i], &surface.selection);
     let seen = SurvivalCurve::new(&point_here.seen);
     context! {
         number => point_here.number,
-        values => point(sweep, &surface.axes, point_here.number),
+        values => surface.words(&surface.axes, i),
         mean => mean_of(&point_here.values),
         middle => bootstrap(&point_here.values, interquartile_mean, TABLE_RESAMPLES),
         low => low_quantile(&sorted(&point_here.values)),

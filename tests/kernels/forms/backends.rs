@@ -8,7 +8,7 @@ use skilltree::backend::reference::REFERENCE;
 use skilltree::backend::{Backend, Test};
 use skilltree::env::workgroup::HotForms;
 use skilltree::kernels::plain::PLAIN;
-use skilltree::layout::{Episode, Moved, PHASE_DONE};
+use skilltree::layout::{Boltzmann, Episode, Moved, PHASE_DONE};
 use skilltree::train::parity::train;
 
 #[test]
@@ -38,7 +38,7 @@ fn every_optimiser_and_size_of_net_is_the_same() {
 }
 
 /// The plain twins with a fault each: one bit of what a hot function takes or leaves.
-static FAULTY: [HostForms; 6] = [
+static FAULTY: [HostForms; 8] = [
     with_fault(
         "draw_step",
         HotForms {
@@ -70,11 +70,31 @@ static FAULTY: [HostForms; 6] = [
         },
     ),
     with_fault(
+        "encode",
+        HotForms {
+            encode: |group, skill, mirrored| {
+                group.encode(skill, mirrored);
+                group.inputs[2] = beside(group.inputs[2]);
+            },
+            ..PLAIN
+        },
+    ),
+    with_fault(
         "forward",
         HotForms {
             forward: |group, skill| {
                 group.forward(skill);
                 group.q[2] = beside(group.q[2]);
+            },
+            ..PLAIN
+        },
+    ),
+    with_fault(
+        "boltzmann",
+        HotForms {
+            boltzmann: |group, children, allowed, inverse_temperature| {
+                let found = group.boltzmann(children, allowed, inverse_temperature);
+                Boltzmann { best: beside(found.best), ..found }
             },
             ..PLAIN
         },
@@ -111,7 +131,7 @@ fn one_bit_in_any_hot_function_is_named() {
         let found = train(some(&DOCKING.cohorts()[0], 0..5), &mut faulty(kind)).expect("it runs");
         parity::advance(&FIVE.cohorts()[0], &found.cohorts()[0]).unwrap_or_else(|| panic!("`{kind}` is not found out"))
     };
-    for kind in ["draw_step", "observe", "move_body", "forward", "backward"] {
+    for kind in ["draw_step", "observe", "move_body", "encode", "forward", "boltzmann", "backward"] {
         let found = differs(kind);
         assert_eq!((found.kernel, found.learner, found.finite), ("train", 0, true), "{kind}: {found}");
         assert_ne!(found.left, found.right);

@@ -44,7 +44,7 @@ fn lesson(next: &mut impl FnMut() -> f64) -> Lesson {
     (0..6).map(|_| step()).collect()
 }
 
-/// Values and hidden units at each step, and the nets after the last one.
+/// Inputs, values, hidden units and odds at each step, and the nets after the last one.
 fn learned(learner: &Learner, forms: &HotForms, lesson: &Lesson) -> Vec<u32> {
     let mut nets = learner.nets.clone();
     let mut group =
@@ -52,9 +52,13 @@ fn learned(learner: &Learner, forms: &HotForms, lesson: &Lesson) -> Vec<u32> {
     let mut words = Vec::new();
     for (observation, child, delta, rate) in lesson {
         group.record.observation = *observation;
-        group.encode(0, false);
+        (forms.encode)(&mut group, 0, child % 2 == 1);
+        words.extend(group.inputs.map(f32::to_bits));
         (forms.forward)(&mut group, 0);
         words.extend(group.q.map(f32::to_bits));
+        let found = (forms.boltzmann)(&mut group, 6, 0b11_0101 | 1 << child, 20.0);
+        words.extend([found.best.to_bits(), found.greedy, found.total.to_bits()]);
+        words.extend(group.weights.map(f32::to_bits));
         let nets = learner.shared.skills[0].nets as usize;
         words.extend(group.hidden[..nets].iter().flatten().map(|unit| unit.to_bits()));
         (forms.backward)(&mut group, 0, *child, *delta, *rate);
@@ -72,6 +76,19 @@ fn nets_learn_as_in_the_plain_form() {
         },
         ..PLAIN
     };
+    let encode = HotForms {
+        encode: |group, skill, mirrored| {
+            group.encode(skill, mirrored);
+            group.inputs[7] = beside(group.inputs[7]);
+        },
+        ..PLAIN
+    };
+    let boltzmann = HotForms {
+        boltzmann: |group, children, allowed, inverse_temperature| {
+            group.boltzmann(children, allowed, beside(inverse_temperature))
+        },
+        ..PLAIN
+    };
     let backward = HotForms {
         backward: |group, skill, child, delta, rate| group.backward(skill, child, beside(delta), rate),
         ..PLAIN
@@ -79,7 +96,7 @@ fn nets_learn_as_in_the_plain_form() {
     let mut next = random(74);
     for learner in learners() {
         let lessons: Vec<Lesson> = (0..15).map(|_| lesson(&mut next)).collect();
-        for faulty in [&forward, &backward] {
+        for faulty in [&encode, &forward, &boltzmann, &backward] {
             compare(&lessons, faulty, |forms, lesson| learned(&learner, forms, lesson));
         }
     }

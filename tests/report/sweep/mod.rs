@@ -4,11 +4,11 @@ mod numbers;
 mod pages;
 
 use crate::OFFICE;
-use skilltree::report::summary::{DivergedLearner, Summary, summarise};
+use skilltree::report::summary::{Summary, summarise};
 use skilltree::report::sweep::SweepResults;
 use skilltree::run_folder::sweep::{Axis, AxisValue, Design, Scale};
 use skilltree::run_folder::tables::write_table;
-use skilltree::run_folder::{EvaluationRow, JsonFile, Names, Provenance, RunFolder, Sweep};
+use skilltree::run_folder::{Divergence, EvaluationRow, JsonFile, Names, Provenance, RunFolder, Sweep};
 use std::path::Path;
 
 pub(crate) const COLUMNS: u32 = 6;
@@ -100,7 +100,7 @@ pub(crate) fn known() -> (Names, Vec<EvaluationRow>) {
     (names(&["hierarchical", "monolithic"]), rows(2, COLUMNS * ROWS, SEEDS, last))
 }
 
-pub(crate) fn summary(names: &Names, rows: &[EvaluationRow], seeds: u32, diverged: &[DivergedLearner]) -> Summary {
+pub(crate) fn summary(names: &Names, rows: &[EvaluationRow], seeds: u32, diverged: &[Divergence]) -> Summary {
     summarise(names, rows, &(0..seeds).collect::<Vec<_>>(), diverged)
 }
 

@@ -3,9 +3,9 @@
 use super::{ROWS, SEEDS, TESTS, known, peak, summary, swept, thresholds};
 use crate::close;
 use skilltree::report::statistics::SurvivalCurve;
-use skilltree::report::summary::{DivergedLearner, cautions};
-use skilltree::report::sweep::{ResponseSurface, SweepResults, levels, main_effect, reruns};
-use skilltree::run_folder::EvaluationRow;
+use skilltree::report::summary::cautions;
+use skilltree::report::sweep::{ResponseSurface, SweepResults, main_effect, reruns};
+use skilltree::run_folder::{Divergence, EvaluationRow};
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -36,7 +36,7 @@ fn the_optimum_and_its_uncertainty_are_found() {
 fn effects_are_marginal_means() {
     let swept = swept();
     let surface = &swept.surfaces[0];
-    let (columns, rows) = (levels(&swept.sweep, surface, 0), levels(&swept.sweep, surface, 1));
+    let (columns, rows) = (surface.levels(0), surface.levels(1));
     let means =
         [0.6670833333333334, 0.78625, 0.8554166666666667, 0.794375, 0.656875, 0.4275].map(|mean: f64| (mean, 5));
     assert_eq!(columns.len(), 6);
@@ -75,7 +75,7 @@ fn trials_to_criterion_are_censored_at_the_last_test() {
         close(step.share.high, high, 1e-6);
     }
     assert_eq!((best.quantile(0.5), best.quantile_interval(0.5)), (Some(250.0), (Some(200.0), None)));
-    let column = SurvivalCurve::new(&levels(&swept.sweep, surface, 0)[2].seen);
+    let column = SurvivalCurve::new(&surface.levels(0)[2].seen);
     assert_eq!((column.count, column.reached), (120, 59));
     close(column.steps.last().unwrap().share.value, 0.508333, 1e-6);
 }
@@ -101,8 +101,9 @@ fn the_worst_learners_come_with_their_commands() {
     assert!(here.ends_with("--out runs/quick-hierarchical-p12-23"), "{here}");
 }
 
-fn diverged(point: u32, seed: u32) -> DivergedLearner {
-    DivergedLearner { arm: "hierarchical".into(), point, seed, skill: "recharge".into(), trial: 60 }
+fn diverged(point: u32, seed: u32) -> Divergence {
+    let (arm, skill, what) = ("hierarchical".into(), "recharge".into(), "a weight is NaN".into());
+    Divergence { arm, point, seed, skill, trial: 60, what, transition: None, weight: None }
 }
 
 /// One learner stops after its second test, at another point all do.

@@ -2,7 +2,7 @@
 
 use super::{ROWS, SEEDS, TESTS, axis, folder, grid, known, names, peak, rows, summary, thresholds};
 use crate::{OFFICE, close, scratch};
-use skilltree::report::sweep::{SweepResults, levels, main_effect};
+use skilltree::report::sweep::{SweepResults, main_effect};
 use skilltree::report::write;
 use skilltree::run_folder::sweep::{Axis, AxisValue, Design, Scale};
 use skilltree::run_folder::tables::write_table;
@@ -79,7 +79,7 @@ fn further_axes_are_margins_and_slices() {
     assert!(page.contains("At office office-hard.") && page.contains("mean over up to 2 points on the other axes"));
     assert!(written.summary.contains("Only 8 seeds"));
     let swept = SweepResults::new(sweep, &summary(&names, &rows, 8, &[]), &(0..8).collect::<Vec<_>>());
-    let offices = levels(&swept.sweep, &swept.surfaces[0], 2);
+    let offices = swept.surfaces[0].levels(2);
     assert_eq!(offices.iter().map(|level| level.label.as_str()).collect::<Vec<_>>(), ["office", "office-hard"]);
     assert_eq!(offices[1].points.len(), 30);
 }
@@ -113,10 +113,10 @@ fn random_points_are_put_into_classes() {
         Some(((38.0 - 25.0 * away) as u32 - (seed + point) % 5, 30))
     });
     let swept = SweepResults::new(sweep.clone(), &summary(&names, &rows, 12, &[]), &(0..12).collect::<Vec<_>>());
-    let rates = levels(&sweep, &swept.surfaces[0], 0);
+    let rates = swept.surfaces[0].levels(0);
     assert!(rates.len() == 5 && rates.iter().all(|level| level.points.len() == 8));
     assert_eq!(main_effect(&rates).unwrap().highest, 2);
-    let lambdas = levels(&sweep, &swept.surfaces[0], 1);
+    let lambdas = swept.surfaces[0].levels(1);
     // NumPy, on the same numbers.
     close(main_effect(&rates).unwrap().difference.value, 0.44921875, 1e-12);
     close(main_effect(&lambdas).unwrap().difference.value, 0.030468750000000044, 1e-12);

@@ -9,6 +9,5 @@ pub mod forward;
 pub mod light;
 pub mod observe;
 pub mod optimiser;
-pub mod reduce;
 pub mod sonar;
 pub mod step;
