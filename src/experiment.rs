@@ -1,7 +1,7 @@
 //! The facade: an experiment is loaded, run into a folder, and what it left is opened.
 
 use crate::backend::Backend;
-use crate::config::plan::Plan;
+use crate::config::plan::{ArmPlan, Plan};
 use crate::config::{ConfigError, Files, OsFiles, Overrides, load_from};
 use crate::run_folder::{FinishedRun, Provenance, RecordError, RunFolder, State};
 use crate::train::batch_group::{BatchGroup, SetupError, groups};
@@ -70,9 +70,7 @@ impl Experiment {
 
     /// Training trials of all learners together.
     pub fn trials(&self) -> u64 {
-        let trials: u64 =
-            self.plan.arms.iter().flat_map(|arm| &arm.skills).map(|skill| u64::from(skill.params.trials)).sum();
-        trials * self.plan.seeds.len() as u64
+        self.plan.arms.iter().map(ArmPlan::trials).sum::<u64>() * self.plan.seeds.len() as u64
     }
 
     /// Trains and tests every learner and writes all results into the folder `out`. A run that was interrupted there goes

@@ -2,12 +2,16 @@
 
 mod support;
 
+use bytemuck::Pod;
 use skilltree::backend::cpu::cpu_backend;
 use skilltree::backend::{Backend, BackendError};
-use skilltree::config::plan::Plan;
+use skilltree::config::plan::{ArmPlan, Plan, SkillPlan, TeacherPlan, Threshold};
 use skilltree::config::{Overrides, load};
-use skilltree::run_folder::sweep::{self, AxisValue, read_sweep};
+use skilltree::env::workgroup::CohortData;
+use skilltree::layout::{HyperParams, Noise};
+use skilltree::run_folder::sweep::AxisValue;
 use skilltree::run_folder::tables::{EVALUATIONS, TRIALS, read_evaluations, read_trials};
+use skilltree::run_folder::{JsonFile, Sweep};
 use skilltree::train::batch_group::groups;
 use skilltree::train::pretraining::shared_skills;
 use std::collections::{BTreeMap, BTreeSet};
@@ -121,7 +125,7 @@ fn check_alone(run: fn(&Path, &[&str]) -> Command, learners: usize, alone: &[(&s
         assert_eq!(found[&who], expected[&who], "{who:?}");
         assert!(nets(&out, &who) == nets(&all, &who), "{who:?}");
         assert_eq!(file_count(&out), 1);
-        assert_eq!(fs::read(out.join(sweep::FILE)).ok(), fs::read(all.join(sweep::FILE)).ok());
+        assert_eq!(fs::read(out.join(Sweep::NAME)).ok(), fs::read(all.join(Sweep::NAME)).ok());
     }
     // No two learners are the same after all.
     let distinct: BTreeSet<Vec<u8>> = expected.keys().map(|who| nets(&all, who)).collect();
@@ -133,8 +137,8 @@ fn check_alone(run: fn(&Path, &[&str]) -> Command, learners: usize, alone: &[(&s
 fn a_learner_alone_is_the_learner_in_the_sweep() {
     let dir = check_alone(docking, 2 * 4 * 2, &[("taught-adam", 2, 3), ("untaught-sgd", 1, 4)]);
     let all = dir.path().join("all");
-    let text = fs::read(all.join(sweep::FILE)).expect("the sweep");
-    let sweep = read_sweep(&text, Path::new("sweep.json")).expect("a sweep");
+    let text = fs::read(all.join(Sweep::NAME)).expect("the sweep");
+    let sweep = Sweep::parse(&text, Path::new("sweep.json")).expect("a sweep");
     let number = |value| AxisValue::Number(value);
     let points = [[4.0, 0.0], [4.0, 0.2], [7.0, 0.0], [7.0, 0.2]].map(|point| point.map(number).to_vec());
     let axes: Vec<_> = sweep.axes.iter().map(|axis| (axis.key.as_str(), axis.label.as_str())).collect();
@@ -191,6 +195,102 @@ fn arms_share_a_batch_and_skills_where_their_learners_see_the_same() {
     }
 }
 
+/// A record with one word changed: a whole number by 1, any other by an eighth or more.
+fn flipped<T: Pod>(record: &T, word: usize) -> T {
+    let mut words: Vec<u32> = bytemuck::cast_slice(std::slice::from_ref(record)).to_vec();
+    words[word] ^= if words[word] < 1 << 20 { 1 } else { 1 << 20 };
+    bytemuck::pod_read_unaligned(bytemuck::cast_slice(&words))
+}
+
+fn words<T>() -> std::ops::Range<usize> {
+    0..size_of::<T>() / 4
+}
+
+/// An arm's skills that are learned before its root are its own alone as soon as anything of them differs.
+#[test]
+fn every_word_keeps_arms_apart_whose_learners_see_it() {
+    let mut plan =
+        swept("tests/support/tree.toml", "sweep.skill.top.applicable.dock=[-0.1, 0.2]", &["arms=['persistent']"]);
+    let arm = plan.arms[0].clone();
+    let mut apart = |change: &dyn Fn(&mut ArmPlan)| {
+        let mut other = arm.clone();
+        change(&mut other);
+        plan.arms = vec![arm.clone(), other];
+        shared_skills(&plan).len() == 2
+    };
+    assert!(!apart(&|_| ()) && !apart(&|arm| (arm.name, arm.point) = ("other".to_owned(), 1)));
+    let root = arm.skills.len() - 1;
+    for skill in 0..=root {
+        for word in words::<HyperParams>() {
+            let change = |arm: &mut ArmPlan| arm.skills[skill].params = flipped(&arm.skills[skill].params, word);
+            assert_eq!(apart(&change), skill < root, "word {word} of skill {skill}");
+        }
+    }
+    for word in words::<Noise>() {
+        assert!(apart(&|arm| arm.noise = flipped(&arm.noise, word)), "word {word} of the noise");
+    }
+    for word in words::<TeacherPlan>() {
+        assert!(apart(&|arm| arm.teacher = flipped(&arm.teacher, word)), "word {word} of the teacher");
+    }
+    let changes: [fn(&mut SkillPlan); 12] = [
+        |skill| skill.name.push('x'),
+        |skill| skill.inputs.clear(),
+        |skill| skill.children.clear(),
+        |skill| skill.applicable[0] = Some(Threshold::Fixed(0.5)),
+        |skill| skill.mirror = Some(0),
+        |skill| skill.oracle = true,
+        |skill| skill.starts[0].0.push('x'),
+        |skill| skill.starts[0].1 *= 0.5,
+        |skill| skill.eval_starts.push('x'),
+        |skill| skill.eval_at.push(1),
+        |skill| skill.goal ^= 1,
+        |skill| skill.regions.push("x".to_owned()),
+    ];
+    for (number, change) in changes.iter().enumerate() {
+        assert!(apart(&|arm| change(&mut arm.skills[0])), "change {number} below the root");
+        assert!(!apart(&|arm| change(&mut arm.skills[root])), "change {number} of the root");
+    }
+    assert!(apart(&|arm| arm.world += 1) && apart(&|arm| drop(arm.skills.remove(0))));
+}
+
+/// Whatever arms of one batch may differ in, nothing of it reaches what they share: shapes, tables, taught lessons.
+#[test]
+fn what_a_batch_shares_knows_nothing_of_its_arms() {
+    let cuts = [
+        "world=../tests/support/small.toml",
+        "arms=['taught-adam']",
+        "learning.hidden=16",
+        "teacher.lessons=16",
+        "teacher.eval_episodes=1",
+    ];
+    let mut plan = swept("configs/docking.toml", "sweep.skill.dock.trials=[4, 7]", &cuts);
+    let arm = plan.arms[0].clone();
+    let with = |words: &[usize]| {
+        let mut other = arm.clone();
+        for word in words {
+            other.skills[0].params = flipped(&other.skills[0].params, *word);
+        }
+        other
+    };
+    let mut sharing = |other: ArmPlan| {
+        plan.arms = vec![arm.clone(), other];
+        shared_skills(&plan).len() == 1
+    };
+    let (own, seen): (Vec<usize>, Vec<usize>) = words::<HyperParams>().partition(|word| sharing(with(&[*word])));
+    println!("a batch's arms may differ in words {own:?}, and not in {seen:?}");
+    assert!(own.len() > seen.len() && sharing(with(&own)));
+    let mut left = |arm: ArmPlan| {
+        plan.arms = vec![arm];
+        let group = groups(&plan).expect("a group").remove(0);
+        let CohortData { skills, tables, bank, .. } = group.shared;
+        (bytemuck::cast_slice::<_, u32>(&skills).to_vec(), tables, bank)
+    };
+    let expected = left(arm.clone());
+    assert!(expected.2.len() > 100 && left(with(&own)) == expected);
+    // The comparison can fail.
+    assert!(left(with(&[std::mem::offset_of!(HyperParams, noise.actuator) / 4])).2 != expected.2);
+}
+
 #[test]
 fn branches_of_a_swept_tree_are_what_they_are_alone() {
     check_alone(trees, 4 * 2, &[("persistent", 1, 1), ("persistent", 2, 0)]);
@@ -203,7 +303,7 @@ fn no_split_and_no_order_changes_a_byte() {
         let whole = dir.path().join(name);
         succeeds(run(&whole, &[]));
         let expected = results(&whole);
-        assert!(expected.contains_key(sweep::FILE) && expected.keys().any(|name| name.starts_with("skills/")));
+        assert!(expected.contains_key(Sweep::NAME) && expected.keys().any(|name| name.starts_with("skills/")));
         for (number, way) in [
             &["--cohort", "1", "--threads", "1"][..],
             &["--cohort", "3", "--iterations", "37"],

@@ -8,7 +8,7 @@ use super::{preview, report};
 use crate::backend::open::BackendOptions;
 use crate::config::Overrides;
 use crate::experiment::Experiment;
-use crate::run_folder::file_system::{Disk, FileSystem};
+use crate::run_folder::file_system::{FileSystem, OsFileSystem};
 use crate::run_folder::{State, folder, tables};
 use crate::train::batch_group::groups;
 use crate::train::run::Options;
@@ -108,7 +108,7 @@ fn seconds(text: &str) -> Result<Duration, String> {
 
 /// Whether nothing is there yet: no folder, or an empty one.
 fn is_new(out: &Path) -> bool {
-    match FileSystem.list(out) {
+    match OsFileSystem.list(out) {
         Ok(names) => names.is_empty(),
         Err(error) => error.kind() == ErrorKind::NotFound,
     }

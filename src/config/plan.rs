@@ -11,6 +11,8 @@ pub use skill::{Child, SkillPlan, Threshold};
 pub use sweep::{Axis, AxisValue, Design, Scale, Sweep};
 
 use crate::world::World;
+use bytemuck::{Pod, Zeroable};
+use serde::{Serialize, Serializer};
 
 /// A whole experiment, ready to run: every default filled in, every name resolved.
 #[derive(Debug, Clone)]
@@ -66,7 +68,7 @@ pub struct PlacedWorld {
 }
 
 /// One experimental condition: the base config with this arm's changes applied, and over them a point of the sweep.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ArmPlan {
     /// Key of the arm in the config, `[a-z0-9-]+`; the same at all points.
     pub name: String,
@@ -77,12 +79,19 @@ pub struct ArmPlan {
     /// The skills of the root's tree, children before parents; the last one is the root.
     pub skills: Vec<SkillPlan>,
     /// Sensors and actuators of this arm's robots.
+    #[serde(serialize_with = "as_bytes")]
     pub noise: Noise,
     /// The teacher's bank and how it demonstrates.
+    #[serde(serialize_with = "as_bytes")]
     pub teacher: TeacherPlan,
 }
 
 impl ArmPlan {
+    /// Training trials of all skills.
+    pub fn trials(&self) -> u64 {
+        self.skills.iter().map(|skill| u64::from(skill.params.trials)).sum()
+    }
+
     /// What files call a child of one of the arm's skills.
     pub fn name_of(&self, child: Child) -> &str {
         match child {
@@ -114,7 +123,8 @@ pub struct Evaluate {
 }
 
 /// The teacher: a privileged planner.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
 pub struct TeacherPlan {
     /// Lessons demonstrated for each skill; learners draw theirs from them.
     pub lessons: u32,
@@ -127,4 +137,9 @@ pub struct TeacherPlan {
     pub collision_cost: f32,
     /// Test trials of the planner itself, which give the bound that reports show.
     pub eval_episodes: u32,
+}
+
+/// A record as the bytes that kernels see.
+pub(crate) fn as_bytes<S: Serializer>(record: &impl Pod, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_bytes(bytemuck::bytes_of(record))
 }

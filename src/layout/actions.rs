@@ -7,7 +7,7 @@ macro_rules! actions {
     ($($(#[doc = $doc:literal])+ $name:ident = $code:ident $number:literal, $text:literal,
         turn $turn:literal, travel $travel:literal, mirror $mirror:ident;)*) => {
         /// A primitive action; its number is its code in every buffer.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
         #[repr(u32)]
         pub enum Action {
             $($(#[doc = $doc])+ $name = $number,)*

@@ -43,7 +43,7 @@ macro_rules! inputs {
     ($($(#[doc = $doc:literal])+ $name:ident $({ $scale:ident })? = $text:literal, $group:ident $($code:literal)?,
         $($field:ident: $value:expr),*;)*) => {
         /// One group of a net's inputs.
-        #[derive(Debug, Clone, Copy, PartialEq)]
+        #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
         pub enum Input {
             $($(#[doc = $doc])+ $name $({
                 /// Decay in inches.

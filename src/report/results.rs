@@ -5,12 +5,8 @@ use super::summary::{self, Summary};
 use super::sweep::SweepResults;
 use super::training::{self, TrainingCurve};
 use crate::config::ConfigError;
-use crate::run_folder::failures::failures_of;
-use crate::run_folder::sensor_readings::{self, read_places};
-use crate::run_folder::sweep::{self, read_sweep};
 use crate::run_folder::tables::{self, parse_evaluations, parse_trials};
-use crate::run_folder::trajectories::{self, read_trajectories};
-use crate::run_folder::{FinishedRun, PlaceReading, RecordError, Trajectory, folder};
+use crate::run_folder::{Divergence, FinishedRun, PlaceReading, RecordError, Trajectory, folder};
 use crate::world::{World, load};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -56,9 +52,9 @@ impl RunResults {
     pub fn read(run: &FinishedRun) -> Result<Self, ReportError> {
         let (names, rows) = read(run, tables::EVALUATIONS, parse_evaluations)?;
         let seeds = &run.manifest().provenance.seeds;
-        let mut summary = summary::summarise(&names, &rows, seeds, &failures_of(run)?);
-        let sweep = read(run, sweep::FILE, |bytes, path| read_sweep(&bytes, path).map(Some))?;
-        let swept = sweep.map(|sweep| SweepResults::new(sweep, &summary, seeds));
+        let failures: Vec<Divergence> = run.json()?.unwrap_or_default();
+        let mut summary = summary::summarise(&names, &rows, seeds, &failures);
+        let swept = run.json()?.map(|sweep| SweepResults::new(sweep, &summary, seeds));
         let (names, mut rows) = read(run, tables::TRIALS, parse_trials)?;
         if swept.is_some() {
             summary = summary.first_points();
@@ -77,8 +73,8 @@ impl RunResults {
         }
         Ok(Self {
             claims: claims::judge(&summary, &trainings),
-            trajectories: read(run, trajectories::FILE, |bytes, path| read_trajectories(&bytes, path))?,
-            places: read(run, sensor_readings::FILE, |bytes, path| read_places(&bytes, path))?,
+            trajectories: run.json()?.unwrap_or_default(),
+            places: run.json()?.unwrap_or_default(),
             summary,
             trainings,
             swept,

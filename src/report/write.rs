@@ -5,7 +5,7 @@ use super::figure::{Figure, render_svg};
 use super::page::{self, DrawnFigure};
 use super::results::{ReportError, RunResults};
 use super::{figure2, floor_plan, learning_curves, rooms, sweep, trajectory_plot};
-use crate::run_folder::file_system::{Disk, FileSystem};
+use crate::run_folder::file_system::{FileSystem, OsFileSystem};
 use crate::run_folder::{FinishedRun, folder, writer};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
@@ -76,14 +76,14 @@ fn draw(results: &RunResults) -> Vec<Figure> {
 /// # Errors
 /// If the folder is not a complete run, in use, damaged or not writable. Each file is written whole or not at all.
 pub fn write(dir: &Path) -> Result<WrittenReport, ReportError> {
-    write_on(Arc::new(FileSystem), dir)
+    write_on(Arc::new(OsFileSystem), dir)
 }
 
 /// As [`write()`], on a disk of the caller's.
 ///
 /// # Errors
 /// As [`write()`].
-pub fn write_on(disk: Arc<dyn Disk>, dir: &Path) -> Result<WrittenReport, ReportError> {
+pub fn write_on(disk: Arc<dyn FileSystem>, dir: &Path) -> Result<WrittenReport, ReportError> {
     let run = FinishedRun::read_on(Arc::clone(&disk), dir)?;
     let _lock = folder::lock(&*disk, dir)?;
     let RenderedReport { figures, page, summary } = render(&run)?;

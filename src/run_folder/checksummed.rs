@@ -3,7 +3,7 @@
 //! Eight bytes, the length of the maker's text (u32, little-endian) and the text, the content; then the number of all
 //! bytes so far (u64) and their SHA-256. The maker is the program and the plan: results of two programs never mix.
 
-use super::file_system::Disk;
+use super::file_system::FileSystem;
 use super::manifest::hexadecimal;
 use super::writer::{FileWriter, sync_folder};
 use super::{FORMAT, RecordError};
@@ -38,58 +38,51 @@ pub(super) fn maker(given: &[(&str, &str)]) -> String {
     format!("skilltree {}{commit}, format {FORMAT}, plan {plan}", env!("CARGO_PKG_VERSION"))
 }
 
-/// Writes a file whole and asks the disk to keep it; hands back its length.
-///
-/// # Errors
-/// As [`super::writer::write()`].
+/// Writes a file whole and asks the disk to keep it.
 pub(super) fn write(
-    disk: &dyn Disk,
+    disk: &dyn FileSystem,
     path: &Path,
     maker: &str,
     content: &mut dyn FnMut(&mut dyn Write) -> io::Result<()>,
-) -> Result<u64, RecordError> {
+) -> Result<(), RecordError> {
     let mut file = FileWriter::create(disk, path)?;
-    fill(&mut file, maker, content).map_err(RecordError::not_committed(path))?;
-    let digest = file.place()?;
-    sync_folder(disk, path.parent().unwrap_or(Path::new(".")))?;
-    Ok(digest.bytes)
-}
-
-fn fill(
-    file: &mut FileWriter<'_>,
-    maker: &str,
-    content: &mut dyn FnMut(&mut dyn Write) -> io::Result<()>,
-) -> io::Result<()> {
-    file.write_all(MAGIC)?;
-    file.write_all(&(maker.len() as u32).to_le_bytes())?;
-    file.write_all(maker.as_bytes())?;
-    content(file)?;
-    let (bytes, hash) = file.so_far();
-    file.write_all(&bytes.to_le_bytes())?;
-    file.write_all(&hash)
+    let mut fill = || {
+        file.write_all(MAGIC)?;
+        file.write_all(&(maker.len() as u32).to_le_bytes())?;
+        file.write_all(maker.as_bytes())?;
+        content(&mut file)?;
+        let (bytes, hash) = file.so_far();
+        file.write_all(&bytes.to_le_bytes())?;
+        file.write_all(&hash)
+    };
+    fill().map_err(RecordError::not_committed(path))?;
+    file.place()?;
+    sync_folder(disk, path.parent().unwrap_or(Path::new(".")))
 }
 
 /// The content of a file of this maker's, from its bytes.
 pub(super) fn read(mut bytes: Vec<u8>, maker: &str) -> Result<Vec<u8>, Refusal> {
+    let damaged = |problem| Err(Refusal::Damaged(problem));
     let Some(end) = bytes.len().checked_sub(TRAILER).filter(|end| *end >= HEAD) else {
-        return Err(Refusal::Damaged("cut within its frame"));
+        return damaged("cut within its frame");
     };
     let (framed, trailer) = bytes.split_at(end);
     if &framed[..8] != MAGIC {
-        return Err(Refusal::Damaged("not a file of a skilltree run"));
+        return damaged("not a file of a skilltree run");
     }
     if trailer[..8] != (end as u64).to_le_bytes() {
-        return Err(Refusal::Damaged("its length is not the one that was written"));
+        return damaged("its length is not the one that was written");
     }
     if trailer[8..] != Sha256::digest(framed)[..] {
-        return Err(Refusal::Damaged("its content is not what was written"));
+        return damaged("its content is not what was written");
     }
     let length = u32::from_le_bytes([framed[8], framed[9], framed[10], framed[11]]) as usize;
-    let Some(found) = framed[HEAD..].get(..length) else {
-        return Err(Refusal::Damaged("its frame is not one that was written"));
-    };
-    if found != maker.as_bytes() {
-        return Err(Refusal::Other(String::from_utf8_lossy(found).into_owned()));
+    match framed[HEAD..].get(..length) {
+        None => return damaged("its frame is not one that was written"),
+        Some(found) if found != maker.as_bytes() => {
+            return Err(Refusal::Other(String::from_utf8_lossy(found).into_owned()));
+        }
+        Some(_) => {}
     }
     bytes.truncate(end);
     bytes.drain(..HEAD + length);

@@ -2,12 +2,8 @@
 //!
 //! A run without such learners has no such file.
 
-use super::{FinishedRun, RecordError, json};
+use super::json::JsonFile;
 use serde::{Deserialize, Serialize};
-use std::path::Path;
-
-/// The file's name in a run folder.
-pub const FILE: &str = "failures.json";
 
 /// A learner that diverged and was frozen: where it happened.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -96,39 +92,15 @@ impl TryFrom<Form> for Number {
     fn try_from(form: Form) -> Result<Self, String> {
         match form {
             Form::Finite(value) => Ok(Self(value)),
-            Form::Word(word) => match word.as_str() {
-                "NaN" => Ok(Self(f32::NAN)),
-                "inf" => Ok(Self(f32::INFINITY)),
-                "-inf" => Ok(Self(f32::NEG_INFINITY)),
+            Form::Word(word) => match word.parse::<f32>() {
+                Ok(value) if !value.is_finite() => Ok(Self(value)),
                 _ => Err(format!("`{word}` is no number")),
             },
         }
     }
 }
 
-/// JSON text of `failures.json`.
-///
-/// # Errors
-/// [`RecordError::Invalid`] if a value has no JSON form.
-pub fn write_failures(failures: &[Divergence]) -> Result<Vec<u8>, RecordError> {
-    json::write(FILE, &failures, true)
-}
-
-/// Reads the content of `failures.json`; `path` is only for messages.
-///
-/// # Errors
-/// [`RecordError::Damaged`] for anything but an array of failures.
-pub fn read_failures(bytes: &[u8], path: &Path) -> Result<Vec<Divergence>, RecordError> {
-    json::read(bytes, path)
-}
-
-/// The learners of a complete run that diverged.
-///
-/// # Errors
-/// As [`read_failures`] and [`FinishedRun::content`].
-pub fn failures_of(run: &FinishedRun) -> Result<Vec<Divergence>, RecordError> {
-    match run.content(FILE)? {
-        Some(bytes) => read_failures(&bytes, &run.dir().join(FILE)),
-        None => Ok(Vec::new()),
-    }
+impl JsonFile for Vec<Divergence> {
+    const NAME: &'static str = "failures.json";
+    const PRETTY: bool = true;
 }

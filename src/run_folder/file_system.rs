@@ -25,90 +25,56 @@ pub type Lock = Box<dyn Any + Send + Sync>;
 
 /// A file that is being written.
 pub trait Writing: Write + Send {
-    /// Returns once the content would survive a power cut.
-    ///
-    /// # Errors
-    /// The disk does not confirm it. What the file holds is then unknown: a second call proves nothing.
+    /// Returns once the content would survive a power cut. After an error it is unknown what the file holds: a second call
+    /// proves nothing.
     fn sync(&mut self) -> io::Result<()>;
 }
 
 /// A file system. Errors are the operating system's own; who calls adds the path and what to do.
-pub trait Disk: Debug + Send + Sync {
+pub trait FileSystem: Debug + Send + Sync {
     /// Makes a folder and those above it; none of them need be new.
-    ///
-    /// # Errors
-    /// Those of the operating system, as for all methods.
     fn make_folder(&self, path: &Path) -> io::Result<()>;
 
     /// Opens an empty file for writing, over one that is there.
-    ///
-    /// # Errors
-    /// Those of the operating system.
     fn create(&self, path: &Path) -> io::Result<Box<dyn Writing>>;
 
     /// Opens a file for reading.
-    ///
-    /// # Errors
-    /// Those of the operating system.
     fn open(&self, path: &Path) -> io::Result<Box<dyn Read>>;
 
     /// The whole content of a file.
-    ///
-    /// # Errors
-    /// Those of [`Disk::open`] and of reading.
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         let mut bytes = Vec::new();
         self.open(path)?.read_to_end(&mut bytes)?;
         Ok(bytes)
     }
 
-    /// Puts a file at another path of the same folder, over one that is there, in one step.
-    ///
-    /// # Errors
-    /// Those of the operating system; both paths are then as before.
+    /// Puts a file at another path of the same folder, over one that is there, in one step; on an error both paths are as
+    /// before.
     fn rename(&self, from: &Path, to: &Path) -> io::Result<()>;
 
     /// Returns once the entries of a folder would survive a power cut.
-    ///
-    /// # Errors
-    /// Those of the operating system.
     fn sync_folder(&self, path: &Path) -> io::Result<()>;
 
     /// Removes a file.
-    ///
-    /// # Errors
-    /// Those of the operating system.
     fn remove_file(&self, path: &Path) -> io::Result<()>;
 
     /// Removes an empty folder.
-    ///
-    /// # Errors
-    /// Those of the operating system.
     fn remove_folder(&self, path: &Path) -> io::Result<()>;
 
     /// Names in a folder, in any order.
-    ///
-    /// # Errors
-    /// Those of the operating system.
     fn list(&self, path: &Path) -> io::Result<Vec<OsString>>;
 
-    /// What stands at a path, or none if nothing does.
-    ///
-    /// # Errors
-    /// It cannot be told: that is not the same as nothing.
+    /// What stands at a path, or none if nothing does. That it cannot be told is an error: it is not the same as nothing.
     fn kind(&self, path: &Path) -> io::Result<Option<Kind>>;
 
-    /// Takes the lock on a file, which is made if there is none. The operating system takes it back when the process
-    /// ends in any way.
-    ///
-    /// # Errors
-    /// [`TryLockError::WouldBlock`] if another holds it, otherwise those of the operating system.
+    /// Takes the lock on a file, which is made if there is none; [`TryLockError::WouldBlock`] if another holds it. The
+    /// operating system takes it back when the process ends in any way.
     fn lock(&self, path: &Path) -> Result<Lock, TryLockError>;
 }
 
 /// The file systems that the operating system offers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct FileSystem;
+pub struct OsFileSystem;
 
 impl Writing for File {
     fn sync(&mut self) -> io::Result<()> {
@@ -116,7 +82,7 @@ impl Writing for File {
     }
 }
 
-impl Disk for FileSystem {
+impl FileSystem for OsFileSystem {
     fn make_folder(&self, path: &Path) -> io::Result<()> {
         fs::create_dir_all(path)
     }

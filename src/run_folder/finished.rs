@@ -1,9 +1,9 @@
 //! A complete run folder, verified and read only.
 
-use super::file_system::{Disk, FileSystem, Kind};
+use super::file_system::{FileSystem, Kind, OsFileSystem};
 use super::manifest::FileDigest;
 use super::paths::{CONFIG, WORLD, list, tally};
-use super::{Manifest, RecordError};
+use super::{JsonFile, Manifest, RecordError};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// A run folder whose every file has the length and hash that its manifest states.
 #[derive(Debug, Clone)]
 pub struct FinishedRun {
-    disk: Arc<dyn Disk>,
+    disk: Arc<dyn FileSystem>,
     dir: PathBuf,
     manifest: Manifest,
     config: String,
@@ -22,17 +22,14 @@ impl FinishedRun {
     /// Opens and verifies a run folder.
     ///
     /// # Errors
-    /// [`RecordError::NoRun`] or [`RecordError::Unfinished`] without a manifest, [`RecordError::Format`] for another layout, otherwise
-    /// [`RecordError::Damaged`] or [`RecordError::Unreadable`] with the file that is missing, cut or altered.
+    /// [`RecordError::NoRun`] or [`RecordError::Unfinished`] without a manifest, [`RecordError::Format`] for another layout,
+    /// otherwise [`RecordError::Damaged`] or [`RecordError::Unreadable`] with the file that is missing, cut or altered.
     pub fn read(dir: &Path) -> Result<Self, RecordError> {
-        Self::read_on(Arc::new(FileSystem), dir)
+        Self::read_on(Arc::new(OsFileSystem), dir)
     }
 
-    /// As [`FinishedRun::read`], on a disk of the caller's.
-    ///
-    /// # Errors
-    /// As [`FinishedRun::read`].
-    pub fn read_on(disk: Arc<dyn Disk>, dir: &Path) -> Result<Self, RecordError> {
+    /// As [`FinishedRun::read`], on a file system of the caller's.
+    pub fn read_on(disk: Arc<dyn FileSystem>, dir: &Path) -> Result<Self, RecordError> {
         let path = dir.join(Manifest::NAME);
         let bytes = match disk.read(&path) {
             Err(error) if matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) => {
@@ -72,9 +69,6 @@ impl FinishedRun {
 
     /// Content of a result file, or none if the run has no such file. What comes out has the hash that the manifest
     /// states, whatever became of the file since the folder was opened.
-    ///
-    /// # Errors
-    /// [`RecordError::Damaged`] or [`RecordError::Unreadable`].
     pub fn content(&self, name: &str) -> Result<Option<Vec<u8>>, RecordError> {
         let Some(stated) = self.manifest.files.get(name) else { return Ok(None) };
         let mut bytes = Vec::new();
@@ -85,10 +79,12 @@ impl FinishedRun {
         Ok(Some(bytes))
     }
 
+    /// A JSON file, or none if the run has none.
+    pub fn json<T: JsonFile>(&self) -> Result<Option<T>, RecordError> {
+        self.content(T::NAME)?.map(|bytes| T::parse(&bytes, &self.dir.join(T::NAME))).transpose()
+    }
+
     /// As [`FinishedRun::content`], for a file of text.
-    ///
-    /// # Errors
-    /// [`RecordError::Damaged`] or [`RecordError::Unreadable`].
     pub fn text(&self, name: &str) -> Result<Option<String>, RecordError> {
         let damaged = |_| RecordError::damaged(&self.dir.join(name), "not UTF-8");
         self.content(name)?.map(|bytes| String::from_utf8(bytes).map_err(damaged)).transpose()
@@ -101,7 +97,7 @@ impl FinishedRun {
 }
 
 /// What to say of a folder without a manifest.
-fn without_manifest(disk: &dyn Disk, dir: &Path) -> Result<RecordError, RecordError> {
+fn without_manifest(disk: &dyn FileSystem, dir: &Path) -> Result<RecordError, RecordError> {
     let config = dir.join(CONFIG);
     if disk.kind(&config).map_err(RecordError::unreadable(&config))?.is_some() {
         let (finished, of) = tally(disk, dir)?;

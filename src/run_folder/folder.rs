@@ -1,7 +1,7 @@
 //! The run folder while a run writes to it.
 
 use super::checksummed::{self, Refusal};
-use super::file_system::{Disk, FileSystem, Lock, TryLockError};
+use super::file_system::{FileSystem, Lock, OsFileSystem, TryLockError};
 use super::paths::{CHECKPOINT, LOCK, MARKER, PARTS, is_free, is_plain, list, part_names, read_if_there};
 use super::{FORMAT, FinishedRun, Manifest, Provenance, RecordError, ResultsWriter, writer};
 use std::collections::BTreeSet;
@@ -25,7 +25,7 @@ pub enum State {
 /// A run folder, locked against other writers until it is dropped or finished.
 #[derive(Debug)]
 pub struct RunFolder {
-    disk: Arc<dyn Disk>,
+    disk: Arc<dyn FileSystem>,
     dir: PathBuf,
     /// Names of the config and of the world files.
     given: Vec<String>,
@@ -43,15 +43,12 @@ impl RunFolder {
     /// If the folder cannot be written, is in use, holds anything else than a run of exactly this config and these
     /// worlds, or is complete but fails verification. Nothing is overwritten.
     pub fn open(dir: &Path, config_text: &str, worlds: &[(&str, &str)]) -> Result<Self, RecordError> {
-        Self::open_on(Arc::new(FileSystem), dir, config_text, worlds)
+        Self::open_on(Arc::new(OsFileSystem), dir, config_text, worlds)
     }
 
-    /// As [`RunFolder::open`], on a disk of the caller's; all that is done with the folder goes through it.
-    ///
-    /// # Errors
-    /// As [`RunFolder::open`].
+    /// As [`RunFolder::open`], on a file system of the caller's; all that is done with the folder goes through it.
     pub fn open_on(
-        disk: Arc<dyn Disk>,
+        disk: Arc<dyn FileSystem>,
         dir: &Path,
         config_text: &str,
         worlds: &[(&str, &str)],
@@ -59,7 +56,11 @@ impl RunFolder {
         let on = &*disk;
         let given: Vec<(&str, &str)> = [(CONFIG, config_text)].iter().chain(worlds).copied().collect();
         check_names(&given)?;
-        make_run_folder(on, dir)?;
+        // What keeps the folder from being made, such as a file in its place, is a matter of `--out`.
+        writer::make_folder(on, dir).map_err(|error| match error {
+            RecordError::NotCommitted { path, source } => RecordError::Unwritable { path, source },
+            other => other,
+        })?;
         refuse_foreign(on, dir)?;
         let lock = lock(on, dir)?;
         // Once more under the lock: another process may have filled the folder in between.
@@ -71,14 +72,20 @@ impl RunFolder {
         }
         let complete = exists(on, &dir.join(Manifest::NAME))?;
         let started = complete || exists(on, &dir.join(CHECKPOINT))? || !part_names(on, dir)?.is_empty();
-        write_once(on, &dir.join(MARKER), format!("skilltree run folder, format {FORMAT}\n").as_bytes())?;
+        let marker = dir.join(MARKER);
+        if !exists(on, &marker)? {
+            writer::write(on, &marker, marker_text().as_bytes())?;
+        }
         for (name, text) in &given {
             let path = dir.join(name);
             match read_if_there(on, &path)? {
                 Some(bytes) if bytes == text.as_bytes() => {}
                 Some(_) => return Err(RecordError::OtherExperiment { path: dir.into(), file: (*name).to_owned() }),
                 None if started => return Err(RecordError::damaged(&path, "missing, although results exist")),
-                None => write_below(on, &path, text.as_bytes())?,
+                None => {
+                    writer::make_folder(on, path.parent().unwrap_or(dir))?;
+                    writer::write(on, &path, text.as_bytes())?;
+                }
             }
         }
         let maker = checksummed::maker(&given);
@@ -105,17 +112,12 @@ impl RunFolder {
     }
 
     /// Names of the committed parts, sorted.
-    ///
-    /// # Errors
-    /// [`RecordError::Unreadable`] if the folder cannot be listed.
     pub fn parts(&self) -> Result<Vec<String>, RecordError> {
         part_names(&*self.disk, &self.dir)
     }
 
     /// Commits one cohort's results under a name of letters, digits, `.`, `-`, `_`. Replaces a part of that name whole.
-    ///
-    /// # Errors
-    /// [`RecordError::Invalid`] for another name or a complete run; otherwise as [`writer::write()`].
+    /// Another name, or a complete run, is [`RecordError::Invalid`].
     pub fn commit_part(&mut self, name: &str, content: &[u8]) -> Result<(), RecordError> {
         let path = self.part_path(name)?;
         if self.state == State::Complete {
@@ -128,34 +130,24 @@ impl RunFolder {
         Ok(())
     }
 
-    /// The content of a committed part, or none if there is no such part.
-    ///
-    /// # Errors
-    /// [`RecordError::Damaged`] if the part is cut, altered or not one of ours, [`RecordError::OtherProgram`] if another
-    /// program or another plan left it.
+    /// The content of a committed part, or none if there is no such part; [`RecordError::Damaged`] if it is cut, altered or
+    /// not one of ours, [`RecordError::OtherProgram`] if another program or another plan left it.
     pub fn read_part(&self, name: &str) -> Result<Option<Vec<u8>>, RecordError> {
         let hint = "remove this file and give the same command again: only this part is computed anew";
         self.read_checksummed(self.part_path(name)?, hint)
     }
 
-    /// Keeps what is needed to go on with the learners in training, in place of what was kept before; hands back its
-    /// length in bytes.
-    ///
-    /// # Errors
-    /// As [`writer::write()`].
+    /// Keeps what is needed to go on with the learners in training, in place of what was kept before.
     pub fn write_checkpoint(
         &mut self,
         content: &mut dyn FnMut(&mut dyn Write) -> io::Result<()>,
-    ) -> Result<u64, RecordError> {
-        let bytes = checksummed::write(&*self.disk, &self.dir.join(CHECKPOINT), &self.maker, content)?;
+    ) -> Result<(), RecordError> {
+        checksummed::write(&*self.disk, &self.dir.join(CHECKPOINT), &self.maker, content)?;
         self.state = State::Partial;
-        Ok(bytes)
+        Ok(())
     }
 
-    /// What was last kept of the learners in training, if anything.
-    ///
-    /// # Errors
-    /// [`RecordError::Damaged`] or [`RecordError::OtherProgram`] if it cannot be gone on from.
+    /// What was last kept of the learners in training, if anything; errors as of [`RunFolder::read_part`].
     pub fn read_checkpoint(&self) -> Result<Option<Vec<u8>>, RecordError> {
         self.read_checksummed(self.dir.join(CHECKPOINT), "the learners that it held are trained anew")
     }
@@ -167,9 +159,6 @@ impl RunFolder {
     }
 
     /// Gives a checkpoint that cannot be used another name, and hands that back: what is not understood is not deleted.
-    ///
-    /// # Errors
-    /// [`RecordError::NotCommitted`], [`RecordError::Unreadable`].
     pub fn set_checkpoint_aside(&self) -> Result<PathBuf, RecordError> {
         let path = self.dir.join(CHECKPOINT);
         let mut number = 1;
@@ -192,11 +181,7 @@ impl RunFolder {
         }
     }
 
-    /// Begins to write the results.
-    ///
-    /// # Errors
-    /// [`RecordError::Invalid`] if the run is complete; [`RecordError::Unreadable`] if a file of the experiment cannot
-    /// be read back.
+    /// Begins to write the results, unless the run is complete.
     pub fn results(&self) -> Result<ResultsWriter<'_>, RecordError> {
         if self.state == State::Complete {
             return Err(RecordError::invalid(Manifest::NAME, "the run is already complete"));
@@ -205,9 +190,6 @@ impl RunFolder {
     }
 
     /// Writes the manifest, which makes the run complete, then removes the parts.
-    ///
-    /// # Errors
-    /// As [`writer::write()`].
     pub fn complete(&self, results: ResultsWriter<'_>, provenance: Provenance) -> Result<Manifest, RecordError> {
         let manifest = results.manifest(provenance)?;
         self.remove_parts();
@@ -215,13 +197,11 @@ impl RunFolder {
     }
 
     /// Writes all results and completes the run. The lock is given back.
-    ///
-    /// # Errors
-    /// Those of [`RunFolder::results`], [`ResultsWriter::add`] and [`RunFolder::complete`].
-    pub fn finish<Files>(self, files: Files, provenance: Provenance) -> Result<Manifest, RecordError>
-    where
-        Files: IntoIterator<Item = (String, Vec<u8>)>,
-    {
+    pub fn finish(
+        self,
+        files: impl IntoIterator<Item = (String, Vec<u8>)>,
+        provenance: Provenance,
+    ) -> Result<Manifest, RecordError> {
         let mut results = self.results()?;
         files.into_iter().try_for_each(|(name, bytes)| results.add(&name, &bytes))?;
         self.complete(results, provenance)
@@ -245,11 +225,9 @@ impl RunFolder {
     }
 }
 
-/// Takes the lock that keeps two processes from writing to one folder, as [`Disk::lock`].
-///
-/// # Errors
-/// [`RecordError::Busy`] if another holds it, [`RecordError::Unwritable`] if it cannot be taken at all.
-pub fn lock(disk: &dyn Disk, dir: &Path) -> Result<Lock, RecordError> {
+/// Takes the lock that keeps two processes from writing to one folder: [`RecordError::Busy`] if another holds it,
+/// [`RecordError::Unwritable`] if it cannot be taken at all.
+pub fn lock(disk: &dyn FileSystem, dir: &Path) -> Result<Lock, RecordError> {
     disk.lock(&dir.join(LOCK)).map_err(|error| match error {
         TryLockError::WouldBlock => RecordError::Busy { path: dir.into() },
         TryLockError::Error(source) => RecordError::Unwritable { path: dir.into(), source },
@@ -268,34 +246,21 @@ fn check_names(given: &[(&str, &str)]) -> Result<(), RecordError> {
     Ok(())
 }
 
-/// Makes the folder itself; what keeps it from being made, such as a file in its place, is a matter of `--out`.
-fn make_run_folder(disk: &dyn Disk, dir: &Path) -> Result<(), RecordError> {
-    writer::make_folder(disk, dir).map_err(|error| match error {
-        RecordError::NotCommitted { path, source } => RecordError::Unwritable { path, source },
-        other => other,
-    })
-}
-
-/// Writes a file, and the folder that holds it if there is none.
-fn write_below(disk: &dyn Disk, path: &Path, bytes: &[u8]) -> Result<(), RecordError> {
-    if let Some(folder) = path.parent() {
-        writer::make_folder(disk, folder)?;
-    }
-    writer::write(disk, path, bytes)
-}
-
-fn exists(disk: &dyn Disk, path: &Path) -> Result<bool, RecordError> {
+fn exists(disk: &dyn FileSystem, path: &Path) -> Result<bool, RecordError> {
     Ok(disk.kind(path).map_err(RecordError::unreadable(path))?.is_some())
 }
 
+fn marker_text() -> String {
+    format!("skilltree run folder, format {FORMAT}\n")
+}
+
 /// A folder is ours if it has the marker, which is the first file written after the lock.
-fn refuse_foreign(disk: &dyn Disk, dir: &Path) -> Result<(), RecordError> {
+fn refuse_foreign(disk: &dyn FileSystem, dir: &Path) -> Result<(), RecordError> {
     let marker = dir.join(MARKER);
-    let expected = format!("skilltree run folder, format {FORMAT}\n");
     if let Some(bytes) = read_if_there(disk, &marker)? {
         let found = String::from_utf8_lossy(&bytes);
         return match found.strip_prefix("skilltree run folder, format ") {
-            Some(_) if found == expected => Ok(()),
+            Some(_) if found == marker_text() => Ok(()),
             Some(version) => Err(RecordError::Format { path: marker, found: version.trim().into(), known: FORMAT }),
             None => Err(RecordError::damaged(&marker, "not the text that skilltree writes")),
         };
@@ -304,8 +269,4 @@ fn refuse_foreign(disk: &dyn Disk, dir: &Path) -> Result<(), RecordError> {
         Some(found) => Err(RecordError::Foreign { path: dir.into(), found }),
         None => Ok(()),
     }
-}
-
-fn write_once(disk: &dyn Disk, path: &Path, bytes: &[u8]) -> Result<(), RecordError> {
-    if exists(disk, path)? { Ok(()) } else { writer::write(disk, path, bytes) }
 }

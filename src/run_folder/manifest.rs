@@ -1,12 +1,11 @@
 //! `manifest.json`: what made a run folder, and the length and hash of every file in it.
 
-use super::file_system::Disk;
+use super::file_system::FileSystem;
 use super::paths::is_plain;
 use super::{FORMAT, RecordError, json};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
 use std::io;
 use std::path::Path;
 
@@ -58,17 +57,12 @@ impl Manifest {
     pub const NAME: &'static str = super::paths::MANIFEST;
 
     /// JSON text, ending with a line feed.
-    ///
-    /// # Errors
-    /// [`RecordError::Invalid`] if a value has no JSON form.
     pub fn to_bytes(&self) -> Result<Vec<u8>, RecordError> {
         json::write(Self::NAME, self, true)
     }
 
-    /// Reads a manifest; `path` is only for messages.
-    ///
-    /// # Errors
-    /// [`RecordError::Format`] for another layout, [`RecordError::Damaged`] for anything that is not a manifest.
+    /// Reads a manifest: [`RecordError::Format`] for another layout, [`RecordError::Damaged`] for anything that is not a
+    /// manifest. `path` is only for messages.
     pub fn parse(bytes: &[u8], path: &Path) -> Result<Self, RecordError> {
         // The format comes first: another version may well have other keys.
         #[derive(Deserialize)]
@@ -95,10 +89,7 @@ impl FileDigest {
     }
 
     /// Digest of a file, without holding it in memory.
-    ///
-    /// # Errors
-    /// Whatever reading the file gives.
-    pub fn of_file(disk: &dyn Disk, path: &Path) -> io::Result<Self> {
+    pub fn of_file(disk: &dyn FileSystem, path: &Path) -> io::Result<Self> {
         let (mut file, mut hasher) = (disk.open(path)?, Sha256::new());
         let (mut buffer, mut bytes) = (vec![0; 1 << 16], 0);
         loop {
@@ -115,9 +106,5 @@ impl FileDigest {
 
 /// Bytes as lower-case hexadecimal digits.
 pub(super) fn hexadecimal(bytes: &[u8]) -> String {
-    bytes.iter().fold(String::with_capacity(2 * bytes.len()), |mut text, byte| {
-        // Writing to a String cannot fail.
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }

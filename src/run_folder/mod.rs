@@ -6,33 +6,30 @@
 
 mod checksummed;
 mod error;
+pub mod examples;
 pub mod failures;
 pub mod file_system;
 pub mod finished;
 pub mod folder;
-mod json;
+pub mod json;
 pub mod manifest;
 mod paths;
 pub mod results_writer;
-pub mod sensor_readings;
-pub mod sums;
 pub mod sweep;
 pub mod tables;
-pub mod trajectories;
 pub mod weights;
 pub mod writer;
 
 pub use error::RecordError;
+pub use examples::{PlaceReading, Trajectory, TrajectoryPoint};
 pub use failures::Divergence;
 pub use finished::FinishedRun;
 pub use folder::{RunFolder, State};
+pub use json::JsonFile;
 pub use manifest::{Manifest, Provenance};
 pub use results_writer::ResultsWriter;
-pub use sensor_readings::PlaceReading;
-pub use sums::Sums;
 pub use sweep::Sweep;
-pub use tables::{EvaluationRow, Names, TrialRow};
-pub use trajectories::{Trajectory, TrajectoryPoint};
+pub use tables::{EvaluationRow, Names, Sums, TrialRow};
 pub use weights::{NetWeights, SkillWeights};
 
 /// Version of the run folder's layout and of every file in it.

@@ -1,7 +1,7 @@
 //! What stands where in a run folder.
 
 use super::RecordError;
-use super::file_system::Disk;
+use super::file_system::FileSystem;
 use std::io;
 use std::path::Path;
 
@@ -36,10 +36,7 @@ pub(super) fn is_plain(path: &str) -> bool {
 
 /// Learners whose results a folder's parts hold, and those of the whole run if there are parts, as their names say:
 /// `32-of-640_...`.
-///
-/// # Errors
-/// [`RecordError::Unreadable`] if the folder cannot be listed.
-pub(super) fn tally(disk: &dyn Disk, dir: &Path) -> Result<(u64, Option<u64>), RecordError> {
+pub(super) fn tally(disk: &dyn FileSystem, dir: &Path) -> Result<(u64, Option<u64>), RecordError> {
     let numbers = |name: &String| -> Option<(u64, u64)> {
         let (finished, rest) = name.split_once("-of-")?;
         Some((finished.parse().ok()?, rest.split('_').next()?.parse().ok()?))
@@ -50,15 +47,12 @@ pub(super) fn tally(disk: &dyn Disk, dir: &Path) -> Result<(u64, Option<u64>), R
 }
 
 /// Names of the committed parts, sorted.
-pub(super) fn part_names(disk: &dyn Disk, dir: &Path) -> Result<Vec<String>, RecordError> {
+pub(super) fn part_names(disk: &dyn FileSystem, dir: &Path) -> Result<Vec<String>, RecordError> {
     Ok(list(disk, &dir.join(PARTS))?.into_iter().filter(|name| is_plain(name)).collect())
 }
 
 /// Names in a folder, sorted; none if there is no such folder. Names that are not Unicode come out altered.
-///
-/// # Errors
-/// [`RecordError::Unreadable`].
-pub(super) fn list(disk: &dyn Disk, folder: &Path) -> Result<Vec<String>, RecordError> {
+pub(super) fn list(disk: &dyn FileSystem, folder: &Path) -> Result<Vec<String>, RecordError> {
     let names = match disk.list(folder) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
         other => other.map_err(RecordError::unreadable(folder))?,
@@ -69,13 +63,9 @@ pub(super) fn list(disk: &dyn Disk, folder: &Path) -> Result<Vec<String>, Record
 }
 
 /// The content of a file, or none if there is no such file.
-///
-/// # Errors
-/// [`RecordError::Unreadable`].
-pub(super) fn read_if_there(disk: &dyn Disk, path: &Path) -> Result<Option<Vec<u8>>, RecordError> {
+pub(super) fn read_if_there(disk: &dyn FileSystem, path: &Path) -> Result<Option<Vec<u8>>, RecordError> {
     match disk.read(path) {
-        Ok(bytes) => Ok(Some(bytes)),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-        Err(source) => Err(RecordError::Unreadable { path: path.into(), source }),
+        other => other.map(Some).map_err(RecordError::unreadable(path)),
     }
 }

@@ -1,10 +1,10 @@
 //! The end of a run: its results and its manifest.
 
-use super::file_system::Disk;
+use super::file_system::FileSystem;
 use super::manifest::FileDigest;
 use super::paths::is_free;
 use super::writer::{self, FileWriter};
-use super::{FORMAT, Manifest, Provenance, RecordError};
+use super::{FORMAT, JsonFile, Manifest, Provenance, RecordError};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 /// that vouches for them. All of this can be repeated.
 #[derive(Debug)]
 pub struct ResultsWriter<'folder> {
-    disk: &'folder dyn Disk,
+    disk: &'folder dyn FileSystem,
     dir: &'folder Path,
     digests: BTreeMap<String, FileDigest>,
     /// Folders with new entries.
@@ -21,7 +21,11 @@ pub struct ResultsWriter<'folder> {
 
 impl<'folder> ResultsWriter<'folder> {
     /// For a run that was made from the files of these names.
-    pub(super) fn new(disk: &'folder dyn Disk, dir: &'folder Path, given: &[String]) -> Result<Self, RecordError> {
+    pub(super) fn new(
+        disk: &'folder dyn FileSystem,
+        dir: &'folder Path,
+        given: &[String],
+    ) -> Result<Self, RecordError> {
         let mut digests = BTreeMap::new();
         for name in given {
             let path = dir.join(name);
@@ -31,11 +35,8 @@ impl<'folder> ResultsWriter<'folder> {
         Ok(Self { disk, dir, digests, folders: BTreeSet::from([dir.into()]) })
     }
 
-    /// Writes one result file. One that an interrupted end has left with these bytes stays as it is.
-    ///
-    /// # Errors
-    /// [`RecordError::Invalid`] for a path that leaves the folder, is taken or comes twice; otherwise as
-    /// [`writer::place`].
+    /// Writes one result file. One that an interrupted end has left with these bytes stays as it is. A path that leaves the
+    /// folder, is taken or comes twice is [`RecordError::Invalid`].
     pub fn add(&mut self, name: &str, bytes: &[u8]) -> Result<(), RecordError> {
         let path = self.path_of(name)?;
         let digest = match self.disk.read(&path) {
@@ -46,23 +47,18 @@ impl<'folder> ResultsWriter<'folder> {
         Ok(())
     }
 
-    /// Begins a result file that is written piece by piece.
-    ///
-    /// # Errors
-    /// As [`ResultsWriter::add`].
+    /// Writes one JSON file, as [`ResultsWriter::add`].
+    pub fn add_json<T: JsonFile>(&mut self, content: &T) -> Result<(), RecordError> {
+        self.add(T::NAME, &content.to_bytes()?)
+    }
+
+    /// Begins a result file that is written piece by piece and ended under the same name.
     pub fn begin(&mut self, name: &str) -> Result<FileWriter<'folder>, RecordError> {
-        let path = self.path_of(name)?;
-        FileWriter::create(self.disk, &path)
+        FileWriter::create(self.disk, &self.path_of(name)?)
     }
 
     /// Ends a file that was begun under this name.
-    ///
-    /// # Errors
-    /// As [`ResultsWriter::add`].
     pub fn end(&mut self, name: &str, file: FileWriter<'_>) -> Result<(), RecordError> {
-        if file.path() != self.path_of(name)? {
-            return Err(RecordError::invalid(name, "not the name under which the file was begun"));
-        }
         self.digests.insert(name.to_owned(), file.place()?);
         Ok(())
     }

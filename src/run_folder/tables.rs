@@ -2,8 +2,9 @@
 //!
 //! A row's fields are the table's columns. Names are dictionary encoded by Parquet.
 
-use super::file_system::{Disk, FileSystem};
-use super::{FORMAT, RecordError, Sums};
+use super::file_system::{FileSystem, OsFileSystem};
+use super::{FORMAT, RecordError};
+use bytemuck::{Pod, Zeroable};
 use bytes::Bytes;
 use parquet::basic::Compression;
 use parquet::errors::ParquetError;
@@ -15,6 +16,7 @@ use parquet::record::{RecordReader, RecordWriter};
 use parquet::schema::types::Type;
 use parquet_derive::{ParquetRecordReader, ParquetRecordWriter};
 use std::io::{self, Write};
+use std::ops::AddAssign;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -95,6 +97,35 @@ pub struct EvaluationRow {
     pub collisions: u32,
 }
 
+/// What is counted of test trials, from the kernel's episodes to the report's page.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Pod, Zeroable)]
+pub struct Sums {
+    /// Test trials.
+    pub episodes: u32,
+    /// Test trials that ended as achieved.
+    pub successes: u32,
+    /// Primitive steps.
+    pub steps: u32,
+    /// Steps with contact.
+    pub collisions: u32,
+    /// Rewards, undiscounted, in the config's units.
+    pub reward: f64,
+    /// Rewards, each discounted from the start of its trial with the skill's own factor.
+    pub returned: f64,
+}
+
+impl AddAssign for Sums {
+    fn add_assign(&mut self, other: Self) {
+        self.episodes += other.episodes;
+        self.successes += other.successes;
+        self.steps += other.steps;
+        self.collisions += other.collisions;
+        self.reward += other.reward;
+        self.returned += other.returned;
+    }
+}
+
 impl EvaluationRow {
     /// What was counted of the test trials.
     pub fn sums(&self) -> Sums {
@@ -125,24 +156,18 @@ pub struct Names {
 impl Names {
     /// Those of training trials.
     pub fn of_trials(rows: &[TrialRow]) -> Self {
-        let mut names = Self::default();
-        for row in rows {
-            note(&mut names.arms, &row.arm);
-            note(&mut names.skills, &row.skill);
-        }
-        names
+        let (arms, skills) = (distinct(rows, |row| &row.arm), distinct(rows, |row| &row.skill));
+        Self { arms, skills, ..Self::default() }
     }
 
     /// Those of tests.
     pub fn of_evaluations(rows: &[EvaluationRow]) -> Self {
-        let mut names = Self::default();
-        for row in rows {
-            note(&mut names.arms, &row.arm);
-            note(&mut names.skills, &row.skill);
-            note(&mut names.variants, &row.variant);
-            note(&mut names.rooms, &row.room);
+        Self {
+            arms: distinct(rows, |row| &row.arm),
+            skills: distinct(rows, |row| &row.skill),
+            variants: distinct(rows, |row| &row.variant),
+            rooms: distinct(rows, |row| &row.room),
         }
-        names
     }
 
     /// Number of a name in a list of distinct ones; the list's length if it is not there.
@@ -151,10 +176,14 @@ impl Names {
     }
 }
 
-fn note(list: &mut Vec<String>, name: &str) {
-    if !list.iter().any(|known| known == name) {
-        list.push(name.to_owned());
+fn distinct<Row>(rows: &[Row], name: impl Fn(&Row) -> &String) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for name in rows.iter().map(name) {
+        if !names.contains(name) {
+            names.push(name.clone());
+        }
     }
+    names
 }
 
 /// A table that is written row by row, in bounded memory: Snappy, dictionaries, no times, nothing that depends on the
@@ -169,10 +198,7 @@ impl<Row, Sink: Write + Send> TableWriter<Row, Sink>
 where
     for<'rows> &'rows [Row]: RecordWriter<Row>,
 {
-    /// Begins a table; `path` is only for messages.
-    ///
-    /// # Errors
-    /// [`RecordError::NotCommitted`] if `sink` takes no more.
+    /// Begins a table; `path` is only for messages. [`RecordError::NotCommitted`] if `sink` takes no more, here and below.
     pub fn new(path: &Path, sink: Sink) -> Result<Self, RecordError> {
         let failed = |error| unwritten(path, error);
         let properties = WriterProperties::builder()
@@ -186,18 +212,12 @@ where
     }
 
     /// Adds a row.
-    ///
-    /// # Errors
-    /// [`RecordError::NotCommitted`] if the sink takes no more.
     pub fn push(&mut self, row: Row) -> Result<(), RecordError> {
         self.rows.push(row);
         if self.rows.len() < ROWS_PER_GROUP { Ok(()) } else { self.flush() }
     }
 
     /// Ends the table and hands back where it was written to.
-    ///
-    /// # Errors
-    /// As [`TableWriter::push`].
     pub fn finish(mut self) -> Result<Sink, RecordError> {
         if !self.rows.is_empty() {
             self.flush()?;
@@ -230,9 +250,6 @@ fn unwritten(path: &Path, error: ParquetError) -> RecordError {
 }
 
 /// The bytes of a whole table.
-///
-/// # Errors
-/// [`RecordError::Invalid`] if Parquet does not take the rows.
 pub fn write_table<Row: Clone>(rows: &[Row]) -> Result<Vec<u8>, RecordError>
 where
     for<'rows> &'rows [Row]: RecordWriter<Row>,
@@ -242,35 +259,24 @@ where
     table.finish()
 }
 
-/// Reads a table of training trials.
-///
-/// # Errors
-/// [`RecordError::Unreadable`]; otherwise as [`parse_trials`].
+/// Reads a table of training trials; [`RecordError::Unreadable`], otherwise as [`parse_trials`].
 pub fn read_trials(path: &Path) -> Result<(Names, Vec<TrialRow>), RecordError> {
-    parse_trials(FileSystem.read(path).map_err(RecordError::unreadable(path))?, path)
+    parse_trials(OsFileSystem.read(path).map_err(RecordError::unreadable(path))?, path)
 }
 
-/// As [`read_trials`], from the file's content; `path` is only for messages.
-///
-/// # Errors
-/// [`RecordError::Damaged`] for anything but a table of exactly these columns, [`RecordError::Format`].
+/// As [`read_trials`], from the file's content: [`RecordError::Damaged`] for anything but a table of exactly these columns,
+/// [`RecordError::Format`] for one of another version. `path` is only for messages.
 pub fn parse_trials(bytes: Vec<u8>, path: &Path) -> Result<(Names, Vec<TrialRow>), RecordError> {
     let rows: Vec<TrialRow> = rows_of(bytes, path)?;
     Ok((Names::of_trials(&rows), rows))
 }
 
-/// Reads a table of tests.
-///
-/// # Errors
-/// As [`read_trials`].
+/// Reads a table of tests, as [`read_trials`].
 pub fn read_evaluations(path: &Path) -> Result<(Names, Vec<EvaluationRow>), RecordError> {
-    parse_evaluations(FileSystem.read(path).map_err(RecordError::unreadable(path))?, path)
+    parse_evaluations(OsFileSystem.read(path).map_err(RecordError::unreadable(path))?, path)
 }
 
-/// As [`read_evaluations`], from the file's content; `path` is only for messages.
-///
-/// # Errors
-/// As [`parse_trials`].
+/// As [`parse_trials`], of tests.
 pub fn parse_evaluations(bytes: Vec<u8>, path: &Path) -> Result<(Names, Vec<EvaluationRow>), RecordError> {
     let rows: Vec<EvaluationRow> = rows_of(bytes, path)?;
     Ok((Names::of_evaluations(&rows), rows))
@@ -315,12 +321,17 @@ fn check_columns(path: &Path, metadata: &ParquetMetaData, expected: &Type) -> Re
         Some(column) if kind(column) != kind(expected) => Some(format!("column `{}` has another type", column.name())),
         Some(_) => None,
     };
-    let unknown = || found.iter().find(|column| expected.iter().all(|other| other.name() != column.name()));
-    let twice = || (found.len() != expected.len()).then(|| "a column comes twice".to_owned());
-    let problem = expected.iter().find_map(problem);
-    let problem =
-        problem.or_else(|| unknown().map(|column| format!("unknown column `{}`", column.name()))).or_else(twice);
-    problem.map_or(Ok(()), |problem| Err(RecordError::damaged(path, problem)))
+    let is_unknown = |column: &&Arc<Type>| expected.iter().all(|other| other.name() != column.name());
+    let problem = if let Some(problem) = expected.iter().find_map(problem) {
+        problem
+    } else if let Some(column) = found.iter().find(is_unknown) {
+        format!("unknown column `{}`", column.name())
+    } else if found.len() != expected.len() {
+        "a column comes twice".to_owned()
+    } else {
+        return Ok(());
+    };
+    Err(RecordError::damaged(path, problem))
 }
 
 fn check_format(path: &Path, metadata: &ParquetMetaData) -> Result<(), RecordError> {

@@ -68,15 +68,16 @@ pub fn write_weights(skills: &[SkillWeights], metadata: &BTreeMap<String, String
             }
         }
     }
-    let failed = |error: String| RecordError::invalid("weights", error);
-    let entries = serde_json::to_string(metadata).map_err(|error| failed(error.to_string()))?;
-    let mut views = Vec::with_capacity(tensors.len());
-    for (name, (shape, bytes)) in &tensors {
-        let view = TensorView::new(Dtype::F32, shape.clone(), bytes).map_err(|error| failed(error.to_string()))?;
-        views.push((name.as_str(), view));
-    }
-    safetensors::serialize(views, Some(HashMap::from([(METADATA_KEY.to_owned(), entries)])))
-        .map_err(|error| failed(error.to_string()))
+    let entries = serde_json::to_string(metadata).map_err(invalid)?;
+    let views = tensors.iter().map(|(name, (shape, bytes))| {
+        Ok((name.as_str(), TensorView::new(Dtype::F32, shape.clone(), bytes).map_err(invalid)?))
+    });
+    let views = views.collect::<Result<Vec<_>, RecordError>>()?;
+    safetensors::serialize(views, Some(HashMap::from([(METADATA_KEY.to_owned(), entries)]))).map_err(invalid)
+}
+
+fn invalid(error: impl std::error::Error) -> RecordError {
+    RecordError::invalid("weights", error.to_string())
 }
 
 /// Reads back what [`write_weights`] wrote: skills and nets ordered by name, and the metadata. `path` is only for

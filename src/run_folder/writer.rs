@@ -1,11 +1,10 @@
 //! Writing files so that a crash leaves either the old one or the new one, and the folders that hold them.
 
 use super::RecordError;
-use super::file_system::{Disk, Writing};
+use super::file_system::{FileSystem, Writing};
 use super::manifest::{FileDigest, hexadecimal};
 use super::paths::list;
 use sha2::{Digest, Sha256};
-use std::fmt;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
@@ -17,7 +16,7 @@ const BUFFER: usize = 1 << 18;
 /// A file that is written piece by piece and appears whole or not at all. Dropped without [`FileWriter::place`], it
 /// leaves nothing.
 pub struct FileWriter<'disk> {
-    disk: &'disk dyn Disk,
+    disk: &'disk dyn FileSystem,
     path: PathBuf,
     temporary: PathBuf,
     file: BufWriter<Box<dyn Writing>>,
@@ -26,18 +25,9 @@ pub struct FileWriter<'disk> {
     placed: bool,
 }
 
-impl fmt::Debug for FileWriter<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("FileWriter").field("path", &self.path).field("bytes", &self.bytes).finish_non_exhaustive()
-    }
-}
-
 impl<'disk> FileWriter<'disk> {
-    /// Begins the file that will stand at `path`.
-    ///
-    /// # Errors
-    /// [`RecordError::NotCommitted`].
-    pub fn create(disk: &'disk dyn Disk, path: &Path) -> Result<Self, RecordError> {
+    /// Begins the file that will stand at `path`; [`RecordError::NotCommitted`] if it cannot be.
+    pub fn create(disk: &'disk dyn FileSystem, path: &Path) -> Result<Self, RecordError> {
         // The process number keeps two processes from writing the same temporary file.
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let temporary = folder_of(path).join(format!(".{name}.{}{TEMPORARY}", std::process::id()));
@@ -46,36 +36,27 @@ impl<'disk> FileWriter<'disk> {
         Ok(Self { disk, path: path.into(), temporary, file, hasher: Sha256::new(), bytes: 0, placed: false })
     }
 
-    /// Where the file will stand.
-    pub fn path(&self) -> &Path {
-        &self.path
-    }
-
     /// Number of the bytes written so far, and their SHA-256.
     pub(super) fn so_far(&self) -> (u64, [u8; 32]) {
         (self.bytes, self.hasher.clone().finalize().into())
     }
 
-    /// Puts the file in its place: fsync, read back, rename. The folder's entry still needs [`sync_folder`].
-    ///
-    /// # Errors
-    /// [`RecordError::NotCommitted`]: the earlier state is intact.
+    /// Puts the file in its place: fsync, read back, rename. The folder's entry still needs [`sync_folder`]. On
+    /// [`RecordError::NotCommitted`] the earlier state is intact.
     pub fn place(mut self) -> Result<FileDigest, RecordError> {
         let (bytes, hash) = self.so_far();
         let digest = FileDigest { bytes, sha256: hexadecimal(&hash) };
-        self.put(&digest).map_err(RecordError::not_committed(&self.path))?;
-        Ok(digest)
-    }
-
-    fn put(&mut self, digest: &FileDigest) -> io::Result<()> {
-        self.file.flush()?;
-        self.file.get_mut().sync()?;
-        if FileDigest::of_file(self.disk, &self.temporary)? != *digest {
-            return Err(io::Error::other("the file reads back differently"));
-        }
-        self.disk.rename(&self.temporary, &self.path)?;
+        let mut put = || {
+            self.file.flush()?;
+            self.file.get_mut().sync()?;
+            if FileDigest::of_file(self.disk, &self.temporary)? != digest {
+                return Err(io::Error::other("the file reads back differently"));
+            }
+            self.disk.rename(&self.temporary, &self.path)
+        };
+        put().map_err(RecordError::not_committed(&self.path))?;
         self.placed = true;
-        Ok(())
+        Ok(digest)
     }
 }
 
@@ -101,38 +82,27 @@ impl Drop for FileWriter<'_> {
     }
 }
 
-/// Writes `path` whole: temporary file beside it, fsync, read back, rename, fsync of the folder.
-///
-/// # Errors
+/// Writes `path` whole: temporary file beside it, fsync, read back, rename, fsync of the folder. The error is
 /// [`RecordError::NotCommitted`] if the earlier state is intact, [`RecordError::DurabilityUnknown`] after the rename.
-pub fn write(disk: &dyn Disk, path: &Path, bytes: &[u8]) -> Result<(), RecordError> {
+pub fn write(disk: &dyn FileSystem, path: &Path, bytes: &[u8]) -> Result<(), RecordError> {
     place(disk, path, bytes)?;
     sync_folder(disk, folder_of(path))
 }
 
 /// As [`write()`], without the last fsync: call [`sync_folder`] once after a batch of files.
-///
-/// # Errors
-/// [`RecordError::NotCommitted`]: the earlier state is intact.
-pub fn place(disk: &dyn Disk, path: &Path, bytes: &[u8]) -> Result<FileDigest, RecordError> {
+pub fn place(disk: &dyn FileSystem, path: &Path, bytes: &[u8]) -> Result<FileDigest, RecordError> {
     let mut file = FileWriter::create(disk, path)?;
     file.write_all(bytes).map_err(RecordError::not_committed(path))?;
     file.place()
 }
 
-/// Asks the disk to keep the folder's entries.
-///
-/// # Errors
-/// [`RecordError::DurabilityUnknown`].
-pub fn sync_folder(disk: &dyn Disk, folder: &Path) -> Result<(), RecordError> {
+/// Asks the disk to keep the folder's entries, or else [`RecordError::DurabilityUnknown`].
+pub fn sync_folder(disk: &dyn FileSystem, folder: &Path) -> Result<(), RecordError> {
     disk.sync_folder(folder).map_err(|source| RecordError::DurabilityUnknown { path: folder.into(), source })
 }
 
 /// Makes a folder, and those above it, that outlives a power cut as the files in it do.
-///
-/// # Errors
-/// [`RecordError::Unreadable`], [`RecordError::NotCommitted`], or [`RecordError::DurabilityUnknown`] once it is there.
-pub fn make_folder(disk: &dyn Disk, folder: &Path) -> Result<(), RecordError> {
+pub fn make_folder(disk: &dyn FileSystem, folder: &Path) -> Result<(), RecordError> {
     let mut parents = Vec::new();
     let mut new = folder;
     while disk.kind(new).map_err(RecordError::unreadable(new))?.is_none() {
@@ -153,11 +123,9 @@ pub fn is_temporary(name: &str) -> bool {
     name.starts_with('.') && name.ends_with(TEMPORARY)
 }
 
-/// Removes leftovers of a killed process from one folder. Call it only while holding the run folder's lock.
-///
-/// # Errors
-/// [`RecordError::Unreadable`] if the folder cannot be listed. A leftover that cannot be removed does no harm.
-pub fn remove_leftovers(disk: &dyn Disk, folder: &Path) -> Result<(), RecordError> {
+/// Removes leftovers of a killed process from one folder, which must be held by the run folder's lock. A leftover that
+/// cannot be removed does no harm.
+pub fn remove_leftovers(disk: &dyn FileSystem, folder: &Path) -> Result<(), RecordError> {
     for name in list(disk, folder)?.iter().filter(|name| is_temporary(name)) {
         let _ = disk.remove_file(&folder.join(name));
     }

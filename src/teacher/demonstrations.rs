@@ -11,6 +11,7 @@ use crate::layout::{
 use crate::math::rng::{Purpose, Stream, draw};
 use crate::policy::persistence::Choices;
 use crate::world::Pose;
+use bytemuck::Zeroable;
 use rayon::prelude::*;
 
 /// Demonstrations tried for each lesson wanted, before the teacher gives up.
@@ -181,7 +182,20 @@ impl Teacher<'_> {
     }
 }
 
-/// HyperParams under which a teacher demonstrates: an arm's, with the run's own key.
+/// What a teacher knows of an arm's numbers, those of the robot and of the task, with the run's own key.
 pub fn teacher_params(params: &HyperParams) -> HyperParams {
-    HyperParams { learner_seed: u32::MAX, ..*params }
+    HyperParams {
+        run_seed: params.run_seed,
+        learner_seed: u32::MAX,
+        noise: params.noise,
+        light_decay: params.light_decay,
+        door_decay: params.door_decay,
+        range_decay: params.range_decay,
+        beside_near: params.beside_near,
+        beside_far: params.beside_far,
+        gamma: params.gamma,
+        max_steps: params.max_steps,
+        reward: params.reward,
+        ..HyperParams::zeroed()
+    }
 }

@@ -34,9 +34,10 @@ pub struct Planner {
 }
 
 /// What a planner plans with, besides the skill.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Terms {
     /// Noise of the actuators.
+    #[serde(serialize_with = "crate::config::plan::as_bytes")]
     pub noise: Noise,
     /// Least and greatest reading beside a wall, whole inches.
     pub beside: (u32, u32),

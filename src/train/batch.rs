@@ -6,7 +6,7 @@
 
 use super::batch_group::{BatchGroup, LearnerId};
 use super::callbacks::{Callbacks, Interrupted};
-use super::cohort_state::CohortState;
+use super::checkpoint::CohortState;
 use super::divergence::divergence_of;
 use super::nets::pack;
 use super::pretraining::Pretrained;
@@ -19,9 +19,6 @@ use crate::layout::{PHASE_FAILED, TRIAL_WORDS};
 use crate::run_folder::Divergence;
 
 /// Trains the skills below the roots of some learners, or goes on with them from where they were saved.
-///
-/// # Errors
-/// Where the backend fails, or the callbacks end it.
 pub fn pretrain(
     plan: &Plan,
     group: &BatchGroup,
@@ -67,9 +64,6 @@ fn learned(plan: &Plan, arm: usize, skill: usize) -> bool {
 
 /// Trains and tests the learners, from their pretrained ones where they have them or from where they were saved, and hands
 /// back all that they leave. Of the learners of one call all are pretrained, or none.
-///
-/// # Errors
-/// Where the backend fails, or the callbacks end it.
 pub fn train<'a>(
     plan: &Plan,
     group: &BatchGroup,
@@ -151,7 +145,6 @@ fn go_on(plan: &Plan, cohort: &mut Cohort, index: usize, result: &mut LearnerRes
 fn alter(training: &mut TrainLoop<'_>, trained: &Cohort) -> Result<(), Interrupted> {
     let (plan, group) = (training.plan, training.group);
     let root = group.shape.skills.len() - 1;
-    let arm = &plan.arms[group.arms[0]];
     let wanted: Vec<bool> = trained.states.iter().map(|state| state.phase != PHASE_FAILED).collect();
     for (number, (alteration, shared)) in plan.alterations.iter().zip(&group.altered).enumerate() {
         let mut cohort = trained.clone();
@@ -166,7 +159,6 @@ fn alter(training: &mut TrainLoop<'_>, trained: &Cohort) -> Result<(), Interrupt
             // The same number as the last test in the world of training: the same random, as far as they go.
             trials: plan.arms[training.results[0].id.arm].skills[root].params.trials,
             variant: number as u32 + 1,
-            world: &plan.worlds[alteration.world.unwrap_or(arm.world)].world,
         };
         training.evaluate(&test, &wanted, &trained.states, Some(trained))?;
     }

@@ -1,7 +1,7 @@
 //! Arms that can train in one cohort: their skills agree in all but numbers, and one teacher serves them.
 
 use crate::backend::Cohort;
-use crate::config::plan::{ArmPlan, Plan, SkillPlan, Threshold};
+use crate::config::plan::{ArmPlan, Plan, SkillPlan, TeacherPlan, Threshold};
 use crate::env::segments::SegmentGrid;
 use crate::env::workgroup::CohortData;
 use crate::layout::{ELEMENTARY_STEP_WORDS, HyperParams, SkillShape};
@@ -49,15 +49,9 @@ pub enum SetupError {
 }
 
 /// Sorts the plan's arms into groups, plans each group's skills and fills the banks.
-///
-/// # Errors
-/// Where a skill does not fit, or its teacher fails.
 pub fn groups(plan: &Plan) -> Result<Vec<BatchGroup>, SetupError> {
     let mut planners = Planners::default();
-    classes(&plan.arms, |arm| structure(plan, arm))
-        .into_iter()
-        .map(|arms| BatchGroup::new(plan, arms, &mut planners))
-        .collect()
+    classes(&plan.arms, in_common).into_iter().map(|arms| BatchGroup::new(plan, arms, &mut planners)).collect()
 }
 
 /// The group that an arm belongs to.
@@ -70,12 +64,15 @@ pub fn group_index(groups: &[BatchGroup], arm: usize) -> usize {
     groups.iter().position(|group| group.arms.binary_search(&arm).is_ok()).unwrap_or(0)
 }
 
-/// Sorts arms into classes with one key each, in the order in which each class shows up first: their indices.
-pub(super) fn classes(arms: &[ArmPlan], key: impl Fn(&ArmPlan) -> String) -> Vec<Vec<usize>> {
+/// Sorts arms into classes that are the same, byte by byte, in what `seen` keeps of them: their indices, in the order in
+/// which each class shows up first.
+pub(super) fn classes(arms: &[ArmPlan], seen: impl Fn(&ArmPlan) -> ArmPlan) -> Vec<Vec<usize>> {
     let mut classes: Vec<Vec<usize>> = Vec::new();
-    let mut known: HashMap<String, usize> = HashMap::new();
+    let mut known: HashMap<Vec<u8>, usize> = HashMap::new();
     for (index, arm) in arms.iter().enumerate() {
-        let class = *known.entry(key(arm)).or_insert(classes.len());
+        // By which name and point a learner goes is nothing that it sees.
+        let seen = ArmPlan { name: String::new(), point: 0, ..seen(arm) };
+        let class = *known.entry(bytes(&seen)).or_insert(classes.len());
         if class == classes.len() {
             classes.push(Vec::new());
         }
@@ -84,36 +81,35 @@ pub(super) fn classes(arms: &[ArmPlan], key: impl Fn(&ArmPlan) -> String) -> Vec
     classes
 }
 
-/// Text that is equal for arms that differ in nothing but numbers of single learners, which the teacher does not see: all
-/// of the arm with these numbers made the same, so that whatever is new in an arm counts until it is made so here.
-pub(super) fn structure(plan: &Plan, arm: &ArmPlan) -> String {
-    let any = &plan.arms[0].skills[0];
-    let bare = |skill: &SkillPlan| {
-        let applicable = skill.applicable.iter().map(|threshold| threshold.map(|_| Threshold::Fixed(0.0))).collect();
-        let own = &skill.params;
-        let params = HyperParams {
-            noise: own.noise,
-            light_decay: own.light_decay,
-            door_decay: own.door_decay,
-            range_decay: own.range_decay,
-            beside_near: own.beside_near,
-            beside_far: own.beside_far,
-            shared_net: own.shared_net,
-            max_steps: own.max_steps,
-            reward: own.reward,
-            ..any.params
-        };
-        SkillPlan { params, applicable, eval_at: Vec::new(), ..skill.clone() }
-    };
-    let skills: Vec<SkillPlan> = arm.skills.iter().map(bare).collect();
-    format!("{:?}", ArmPlan { name: String::new(), point: 0, skills, ..arm.clone() })
+/// All that a value holds: records as they lie in memory, anything else as serde tells it.
+fn bytes(value: &impl Serialize) -> Vec<u8> {
+    postcard::to_stdvec(value).expect("memory takes whatever a plan holds")
 }
 
-/// Planners, and which of their tests have been made, by the text of the task: arms share most tasks.
+/// An arm without what is a single learner's alone: what the skills' shapes and the teacher are made from.
+pub(super) fn in_common(arm: &ArmPlan) -> ArmPlan {
+    let mut common = arm.clone();
+    for skill in &mut common.skills {
+        let own = skill.params;
+        skill.params = HyperParams {
+            // It discounts nothing but what is told of the planner's own tests.
+            gamma: 0.0,
+            shared_net: own.shared_net,
+            // The planner's table stands in for nets.
+            value_scale: if skill.oracle { own.value_scale } else { 0.0 },
+            ..teacher_params(&own)
+        };
+        skill.applicable.iter_mut().flatten().for_each(|threshold| *threshold = Threshold::Fixed(0.0));
+        skill.eval_at.clear();
+    }
+    common
+}
+
+/// Planners, and which of their tests have been made, by the bytes of the task: arms share most tasks.
 #[derive(Debug, Default)]
 struct Planners {
-    known: HashMap<String, Rc<Planner>>,
-    tested: HashSet<String>,
+    known: HashMap<Vec<u8>, Rc<Planner>>,
+    tested: HashSet<Vec<u8>>,
 }
 
 impl BatchGroup {
@@ -122,36 +118,32 @@ impl BatchGroup {
         let first = members[0];
         let world = plan.world_of(first);
         let (shape, mut shared) = lay_out(&members, world)?;
+        let (terms, TeacherPlan { lessons, eval_episodes, .. }) = (terms_of(first), first.teacher);
         let mut bounds = Vec::new();
-        let (params, ..) = shape.learner(first, plan.run_seed, 0);
         for (number, skill) in first.skills.iter().enumerate() {
-            let taught = members.iter().any(|arm| arm.skills[number].params.lessons > 0);
-            let terms = terms_of(first);
-            let task = format!("{:?}", (first.world, &terms, skill.params.reward, skill.goal, skill.actions()));
             // A mirror image has nothing of its own to plan.
             if skill.mirror.is_some() {
                 bounds.push(None);
                 continue;
             }
+            let own = HyperParams { run_seed: plan.run_seed, ..skill.params };
+            let task = bytes(&(first.world, &terms, own.reward, skill.goal, &skill.regions, skill.actions()));
             let make = || Rc::new(Planner::new(world, &shared, skill, &terms));
             let planner = Rc::clone(planners.known.entry(task.clone()).or_insert_with(make));
             let driven = driven(&shared.skills[number], skill);
-            let teacher = Teacher {
-                shared: &shared,
-                planner: &planner,
-                plan: &driven,
-                params: &teacher_params(&params[number]),
-                number: number as u32,
-            };
-            let bank = if taught { teacher.bank(skill, first.teacher.lessons)? } else { Vec::new() };
-            let test = format!("{:?}", (task, &skill.eval_starts, skill.params.max_steps, first.teacher.eval_episodes));
-            bounds.push(planners.tested.insert(test).then(|| teacher.tests(first.teacher.eval_episodes)));
-            let table = skill.oracle.then(|| planner.table(&shared, params[number].value_scale));
-            let own = &mut shared.skills[number];
-            own.bank_offset = shared.bank.len() as u32;
-            own.bank_lessons = if taught { first.teacher.lessons } else { 0 };
+            let params = teacher_params(&own);
+            let teacher =
+                Teacher { shared: &shared, planner: &planner, plan: &driven, params: &params, number: number as u32 };
+            let test = bytes(&(task, &skill.eval_starts, own.max_steps, eval_episodes));
+            bounds.push(planners.tested.insert(test).then(|| teacher.tests(eval_episodes)));
+            let taught = members.iter().any(|arm| arm.skills[number].params.lessons > 0);
+            let bank = if taught { teacher.bank(skill, lessons)? } else { Vec::new() };
+            let table = skill.oracle.then(|| planner.table(&shared, own.value_scale));
+            let placed = &mut shared.skills[number];
+            placed.bank_offset = shared.bank.len() as u32;
+            placed.bank_lessons = if taught { lessons } else { 0 };
             if let Some(table) = table {
-                own.planned = shared.tables.len() as u32;
+                placed.planned = shared.tables.len() as u32;
                 shared.tables.extend(table);
             }
             shared.bank.extend(bank);
@@ -160,19 +152,17 @@ impl BatchGroup {
         if shared.bank.is_empty() {
             shared.bank.push(0);
         }
-        let mut altered = Vec::new();
-        for alteration in &plan.alterations {
-            let (_, mut other) = lay_out(&members, &plan.worlds[alteration.world.unwrap_or(first.world)].world)?;
-            other.bank.push(0);
-            altered.push(other);
-        }
+        let altered = plan.alterations.iter().map(|alteration| {
+            let (_, other) = lay_out(&members, &plan.worlds[alteration.world.unwrap_or(first.world)].world)?;
+            Ok(CohortData { bank: vec![0], ..other })
+        });
+        let altered = altered.collect::<Result<_, ShapeError>>()?;
         Ok(Self { arms, shape, shared, altered, bounds })
     }
 
     /// The group's learners, arm by arm.
     pub fn learners(&self, plan: &Plan) -> Vec<LearnerId> {
-        let of_arm =
-            |arm: &usize| plan.seeds.iter().map(|seed| LearnerId { arm: *arm, seed: *seed }).collect::<Vec<_>>();
+        let of_arm = |&arm: &usize| plan.seeds.iter().map(move |&seed| LearnerId { arm, seed });
         self.arms.iter().flat_map(of_arm).collect()
     }
 

@@ -1,7 +1,7 @@
 //! What is told, asked and saved while learners train.
 
-use super::result::LearnerResult;
-use crate::backend::{BackendError, Cohort};
+use super::checkpoint::CohortState;
+use crate::backend::BackendError;
 use crate::run_folder::{Divergence, RecordError};
 use std::path::Path;
 
@@ -16,27 +16,13 @@ pub enum Signal {
     Stop,
 }
 
-/// A cohort in training, as it is saved.
-#[derive(Debug, Clone, Copy)]
-pub struct Snapshot<'a> {
-    /// The tests taken so far; after training, all that the learners leave.
-    pub results: &'a [LearnerResult],
-    /// The learners' memory.
-    pub cohort: &'a Cohort,
-    /// Whether training is over, so that only tests under alterations are to come. Lessons and rows no longer count.
-    pub trained: bool,
-}
-
 /// Told how training goes, and asked whether it should go on. All methods but the first have nothing to do.
 pub trait Callbacks {
     /// So many trials are finished, of all learners together; in a run, those of an earlier start included.
     fn progress(&mut self, trials: u64) -> Signal;
 
     /// Saves what is needed to go on from here. A run does so by itself.
-    ///
-    /// # Errors
-    /// Where it cannot be saved.
-    fn save(&mut self, _snapshot: &Snapshot<'_>) -> Result<(), RecordError> {
+    fn save(&mut self, _cohort: CohortState<'_>) -> Result<(), RecordError> {
         Ok(())
     }
 

@@ -14,10 +14,7 @@ use std::io::{self, Read, Write};
 pub struct PartError;
 
 /// Writes a value.
-///
-/// # Errors
-/// Those of `out`.
-pub fn write(value: &impl Serialize, out: &mut dyn Write) -> io::Result<()> {
+pub fn write(value: &(impl Serialize + ?Sized), out: &mut dyn Write) -> io::Result<()> {
     let mut out = Remembering { inner: FrameEncoder::new(out), error: None };
     match postcard::to_io(value, &mut out) {
         Ok(_) => out.inner.flush(),
@@ -25,10 +22,14 @@ pub fn write(value: &impl Serialize, out: &mut dyn Write) -> io::Result<()> {
     }
 }
 
-/// Reads a value back.
-///
-/// # Errors
-/// Where the bytes end early, go on, or are not those of such a value.
+/// The bytes of a value.
+pub fn encode(value: &(impl Serialize + ?Sized)) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    write(value, &mut bytes)?;
+    Ok(bytes)
+}
+
+/// Reads a value back; an error where the bytes end early, go on, or are not those of such a value.
 pub fn read<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, PartError> {
     let mut plain = Vec::new();
     FrameDecoder::new(bytes).read_to_end(&mut plain).map_err(|_| PartError)?;
@@ -135,29 +136,23 @@ mod tests {
         number: Option<u64>,
     }
 
-    fn written(value: &impl Serialize) -> Vec<u8> {
-        let mut bytes = Vec::new();
-        write(value, &mut bytes).unwrap();
-        bytes
-    }
-
     #[test]
     fn values_come_back_and_every_cut_is_seen() {
         let value = Example { words: vec![0, 0, 7, u32::MAX], names: vec!["räume".to_owned()], number: Some(1 << 40) };
-        let bytes = written(&value);
+        let bytes = encode(&value).unwrap();
         assert_eq!(read::<Example>(&bytes), Ok(value));
         for length in 0..bytes.len() {
             assert_eq!(read::<Example>(&bytes[..length]), Err(PartError), "{length} bytes");
         }
         assert_eq!(read::<Example>(&[bytes, vec![0]].concat()), Err(PartError));
         // Three bytes are no word.
-        assert_eq!(read::<Example>(&written(&(&b"abc"[..].to_vec(), "[]", None::<u64>))), Err(PartError));
+        assert_eq!(read::<Example>(&encode(&(&b"abc"[..].to_vec(), "[]", None::<u64>)).unwrap()), Err(PartError));
     }
 
     #[test]
     fn zeros_take_little_space() {
         let value = Example { words: vec![0; 1_000_000], names: Vec::new(), number: None };
-        let bytes = written(&value).len();
+        let bytes = encode(&value).unwrap().len();
         assert!(bytes < 200_000, "{bytes}");
     }
 

@@ -1,10 +1,12 @@
 //! The committed parts of a run: which learners are finished, and what they leave, read when it is asked for.
 
+use super::batch_group::group_of;
 use super::batch_group::{BatchGroup, LearnerId};
-use super::codec::PartError;
-use super::result::{LearnerResult, decode, encode};
-use super::validate::{is_complete, is_known};
+use super::codec::{self, PartError};
+use super::nets::weight_count;
+use super::result::{LearnerResult, is_known};
 use crate::config::plan::Plan;
+use crate::layout::MAX_CHILDREN;
 use crate::run_folder::{RecordError, RunFolder};
 use std::collections::{BTreeMap, VecDeque};
 
@@ -24,15 +26,17 @@ pub struct Parts {
 
 impl Parts {
     /// Reads every part once: each is whole, or it is an error.
-    ///
-    /// # Errors
-    /// [`RecordError::Damaged`], [`RecordError::OtherProgram`], [`RecordError::Unreadable`].
     pub fn read(plan: &Plan, groups: &[BatchGroup], folder: &RunFolder) -> Result<Self, RecordError> {
         let mut parts = Self::default();
         for name in folder.parts()? {
             let mut results = load(folder, &name)?;
             results.retain(|id, _| is_known(plan, *id));
-            let complete = |result: &LearnerResult| is_complete(plan, groups, result);
+            let complete = |result: &LearnerResult| {
+                let shape = &group_of(groups, result.id.arm).shape;
+                result.fits(plan)
+                    && result.weights.len() == weight_count(&shape.skills)
+                    && result.thresholds.len() == MAX_CHILDREN
+            };
             if !results.values().all(complete) {
                 return Err(damaged(folder, &name, &PartError));
             }
@@ -43,9 +47,6 @@ impl Parts {
     }
 
     /// Writes the results of some learners, of so many in the whole run.
-    ///
-    /// # Errors
-    /// As [`RunFolder::commit_part`].
     pub fn commit(
         &mut self,
         folder: &mut RunFolder,
@@ -57,7 +58,7 @@ impl Parts {
             let (Some(first), Some(last)) = (ids.first(), ids.last()) else { continue };
             let place = |id: &LearnerId| format!("arm{}-seed{}", id.arm, id.seed);
             let name = format!("{}-of-{learners}_{}_{}", part.len(), place(first), place(last));
-            let bytes = encode(part).map_err(|error| RecordError::invalid(&*name, error.to_string()))?;
+            let bytes = codec::encode(part).map_err(|error| RecordError::invalid(&*name, error.to_string()))?;
             folder.commit_part(&name, &bytes)?;
             self.note(name, &ids);
         }
@@ -81,9 +82,6 @@ impl Parts {
     }
 
     /// What a learner leaves, or none if it is not finished.
-    ///
-    /// # Errors
-    /// As [`Parts::read`].
     pub fn result(&mut self, folder: &RunFolder, id: LearnerId) -> Result<Option<&LearnerResult>, RecordError> {
         let Some(number) = self.learners.get(&id).copied() else { return Ok(None) };
         if !self.held.iter().any(|(held, _)| *held == number) {
@@ -99,7 +97,7 @@ impl Parts {
 
 fn load(folder: &RunFolder, name: &str) -> Result<BTreeMap<LearnerId, LearnerResult>, RecordError> {
     let Some(bytes) = folder.read_part(name)? else { return Ok(BTreeMap::new()) };
-    let results = decode(&bytes).map_err(|error| damaged(folder, name, &error))?;
+    let results: Vec<LearnerResult> = codec::read(&bytes).map_err(|error| damaged(folder, name, &error))?;
     Ok(results.into_iter().map(|result| (result.id, result)).collect())
 }
 

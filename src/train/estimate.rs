@@ -88,9 +88,6 @@ impl Forecast {
 
 /// Iterations per second of the largest cohort, found by letting it train for a moment: at most about `most`, and less
 /// where the whole run is short. The backend's memory is overwritten.
-///
-/// # Errors
-/// Where the backend fails.
 pub fn measure(
     plan: &Plan,
     groups: &[BatchGroup],
@@ -144,16 +141,12 @@ fn iterations(plan: &Plan, arm: usize, skills: Range<usize>) -> f64 {
             f64::from(skill.params.trials) * f64::from(learning.replays + taught) * LEARNED[usize::from(at_decisions)];
         // Teachers are quick.
         let lessons = f64::from(skill.params.lessons * learning.pretrain_epochs) * 0.5;
-        let acted = f64::from(skill.params.trials) + f64::from(tests(skill)) * f64::from(plan.evaluate.episodes);
+        let acted =
+            f64::from(skill.params.trials) + skill.test_points().count() as f64 * f64::from(plan.evaluate.episodes);
         let length = f64::from(skill.params.max_steps) * if skill.goal == 0 { 1.0 } else { LENGTH };
         length * (acted + replays + lessons)
     };
     plan.arms[arm].skills[skills].iter().map(of_skill).sum()
-}
-
-/// Tests of a skill.
-fn tests(skill: &SkillPlan) -> u32 {
-    skill.eval_at.iter().filter(|at| **at < skill.params.trials).count() as u32 + 1
 }
 
 /// Bytes that a learner's results take on disk.
@@ -162,7 +155,7 @@ fn disk_of(plan: &Plan, group: &BatchGroup, arm: usize) -> u64 {
     let rooms = plan.world_of(arm).rooms.len() as u64;
     let mut bytes = NET_BYTES[0];
     for (skill, shape) in arm.skills.iter().zip(&group.shape.skills) {
-        let tests = u64::from(tests(skill)) * rooms;
+        let tests = skill.test_points().count() as u64 * rooms;
         bytes += u64::from(skill.params.trials + skill.params.lessons) * ROW_BYTES[0] + tests * ROW_BYTES[1];
         if skill.mirror.is_none() && !skill.oracle {
             let weights = u64::from(skill.params.hidden) * (u64::from(shape.inputs) + 2) + 1;

@@ -65,9 +65,6 @@ pub fn robot_at(pose: Pose, noise: &Noise, run_seed: u32, robot_seed: u32) -> Ro
 pub const SILENT: Noise = Noise { kind: NOISE_GAUSSIAN, actuator: 0.0, sonar: 0.0, light: 0.0, compass: 0.0 };
 
 /// What a robot senses at the world's named places, without noise.
-///
-/// # Errors
-/// Where the backend fails.
 pub fn places(world: &World, backend: &mut dyn Backend) -> Result<Vec<PlaceReading>, BackendError> {
     let shared = floor_only(world);
     let mut robots: Vec<Robot> = world.places.iter().map(|(_, pose)| robot_at(*pose, &SILENT, 0, 0)).collect();

@@ -80,9 +80,6 @@ fn robots(plan: &Plan) -> Vec<Robot> {
 
 impl Work {
     /// Work cut from an experiment: `learners` of its learners, arms in turn, for a few trials.
-    ///
-    /// # Errors
-    /// Where the experiment cannot be set up.
     pub fn new(plan: &Plan, learners: usize) -> Result<Self, SetupError> {
         let plan = cut(plan, learners);
         let groups = groups(&plan)?;
@@ -107,21 +104,17 @@ impl Work {
     }
 
     /// All of the work.
-    ///
-    /// # Errors
-    /// Where the backend fails.
     pub fn run(&self, backend: &mut dyn Backend) -> Result<Sample, BackendError> {
         let mut sample = self.walk(backend)?;
         for cohort in &self.cohorts {
-            sample.append(train(cohort.clone(), backend)?);
+            let Sample { cohorts, tests, .. } = train(cohort.clone(), backend)?;
+            sample.cohorts.extend(cohorts);
+            sample.tests.extend(tests);
         }
         Ok(sample)
     }
 
     /// The robots' part: kernel `step` alone.
-    ///
-    /// # Errors
-    /// Where the backend fails.
     pub fn walk(&self, backend: &mut dyn Backend) -> Result<Sample, BackendError> {
         let mut sample = Sample::default();
         let mut robots = self.robots.clone();
@@ -139,9 +132,6 @@ impl Work {
 }
 
 /// Trains a cohort to its end, with a test before, within and after the training of each skill.
-///
-/// # Errors
-/// Where the backend fails.
 pub fn train(cohort: Cohort, backend: &mut dyn Backend) -> Result<Sample, BackendError> {
     let mut sample = Sample::default();
     let trials: Vec<u32> = (0..cohort.skills)
@@ -165,12 +155,6 @@ pub fn train(cohort: Cohort, backend: &mut dyn Backend) -> Result<Sample, Backen
 }
 
 impl Sample {
-    fn append(&mut self, other: Self) {
-        self.cohorts.extend(other.cohorts);
-        self.tests.extend(other.tests);
-        self.robots.extend(other.robots);
-    }
-
     /// The learners' memory after training, one cohort per group of arms.
     pub fn cohorts(&self) -> &[Cohort] {
         &self.cohorts

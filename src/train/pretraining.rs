@@ -1,9 +1,9 @@
 //! Arms that have everything below their roots in common, and so learn it once for each seed; and arms without anything
 //! below their roots that can train in one cohort.
 
-use super::batch_group::{BatchGroup, LearnerId, classes, group_of, structure};
+use super::batch_group::{BatchGroup, LearnerId, classes, group_of, in_common};
 use super::codec::{json, pod, record};
-use super::result::TestResult;
+use super::result::{TestResult, are_of_arm, is_known};
 use super::thresholds::Fit;
 use crate::config::plan::{ArmPlan, Plan};
 use crate::layout::LearnerState;
@@ -49,16 +49,34 @@ pub struct SharedSkills {
 /// Sorts the plan's arms by the skills that they share.
 pub fn shared_skills(plan: &Plan) -> Vec<SharedSkills> {
     let shared = |arms: Vec<usize>| SharedSkills { pretrained: plan.arms[arms[0]].skills.len() > 1, arms };
-    classes(&plan.arms, |arm| below_root(plan, arm)).into_iter().map(shared).collect()
+    classes(&plan.arms, below_root).into_iter().map(shared).collect()
 }
 
-/// Text that is equal for arms whose learners are the same until the root begins: all of the arm but its root.
-fn below_root(plan: &Plan, arm: &ArmPlan) -> String {
+/// An arm as its learners see it until the root begins: all of it but the root.
+fn below_root(arm: &ArmPlan) -> ArmPlan {
     match arm.skills.split_last() {
-        Some((_, below)) if !below.is_empty() => {
-            format!("{:?}", ArmPlan { name: String::new(), point: 0, skills: below.to_vec(), ..arm.clone() })
-        }
-        _ => structure(plan, arm),
+        Some((_, below)) if !below.is_empty() => ArmPlan { skills: below.to_vec(), ..arm.clone() },
+        _ => in_common(arm),
+    }
+}
+
+impl Pretraining {
+    /// Whether these are learners of the plan and, if they are there, all of their skills below the root.
+    pub(super) fn fits(&self, plan: &Plan, groups: &[BatchGroup]) -> bool {
+        let sound = |learner: &Pretrained| {
+            let shape = &group_of(groups, learner.id.arm).shape;
+            let root = shape.skills.len() - 1;
+            learner.nets.len() == shape.skills[root].nets_offset as usize
+                && learner.rows.len() <= shape.rows_stride
+                && learner.fits.len() == root
+                && are_of_arm(plan, learner.id.arm, &learner.tests, &learner.rows)
+        };
+        let ids = || self.learners.iter().copied();
+        ids().all(|id| is_known(plan, id))
+            && self
+                .done
+                .as_ref()
+                .is_none_or(|done| done.iter().map(|learner| learner.id).eq(ids()) && done.iter().all(sound))
     }
 }
 

@@ -1,10 +1,13 @@
-//! What one learner leaves behind, and its bytes in a committed part of a run folder.
+//! What one learner leaves behind.
 
 use super::batch_group::LearnerId;
-use super::codec::{self, PartError, json, pod};
+use super::codec::{json, pod};
+use crate::config::plan::Plan;
+use crate::layout::TRIAL_WORDS;
 use crate::run_folder::{Divergence, Sums};
+use crate::world::World;
+use glam::Vec2;
 use serde::{Deserialize, Serialize};
-use std::io;
 
 /// One test of one learner.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -34,7 +37,7 @@ pub struct LearnerResult {
     pub updates: u32,
     /// Tests, in order.
     pub tests: Vec<TestResult>,
-    /// Rows of the trial table, `ROW_WORDS` words each.
+    /// Rows of the trial table, `TRIAL_WORDS` words each.
     #[serde(with = "pod")]
     pub rows: Vec<u32>,
     /// Weights of all nets as they ended.
@@ -58,64 +61,44 @@ impl LearnerResult {
             thresholds: Vec::new(),
         }
     }
+
+    /// Whether a learner of the plan can have left these tests and rows.
+    pub(super) fn fits(&self, plan: &Plan) -> bool {
+        is_known(plan, self.id) && are_of_arm(plan, self.id.arm, &self.tests, &self.rows)
+    }
 }
 
-/// Bytes of a part.
-///
-/// # Errors
-/// Where a result has no bytes: a bug.
-pub fn encode(results: &[LearnerResult]) -> io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    codec::write(&results, &mut bytes)?;
-    Ok(bytes)
+/// Whether the plan has such a learner.
+pub(super) fn is_known(plan: &Plan, id: LearnerId) -> bool {
+    id.arm < plan.arms.len() && plan.seeds.binary_search(&id.seed).is_ok()
 }
 
-/// Reads a part back.
-///
-/// # Errors
-/// Where the bytes end early, go on, or are not those of results.
-pub fn decode(bytes: &[u8]) -> Result<Vec<LearnerResult>, PartError> {
-    codec::read(bytes)
+/// Whether tests are of an arm's skills, in circumstances and rooms that there are, and rows whole and of its skills.
+pub(super) fn are_of_arm(plan: &Plan, arm: usize, tests: &[TestResult], rows: &[u32]) -> bool {
+    let skills = plan.arms[arm].skills.len();
+    let test_fits = |test: &TestResult| {
+        let rooms = world_of(plan, arm, test.variant).map(|world| world.rooms.len() + 1);
+        (test.skill as usize) < skills && rooms == Some(test.rooms.len())
+    };
+    let (whole, rest) = rows.as_chunks::<TRIAL_WORDS>();
+    tests.iter().all(test_fits) && rest.is_empty() && whole.iter().all(|row| (row[0] as usize) < skills)
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::run_folder::failures::{Number, Weight};
+/// The floor plan of an arm's tests of a variant, which is as in [`TestResult::variant`], if there is such a variant.
+pub(super) fn world_of(plan: &Plan, arm: usize, variant: u32) -> Option<&World> {
+    let own = plan.arms[arm].world;
+    let world = match variant.checked_sub(1) {
+        None => own,
+        Some(number) => plan.alterations.get(number as usize)?.world.unwrap_or(own),
+    };
+    Some(&plan.worlds[world].world)
+}
 
-    fn example() -> Vec<LearnerResult> {
-        let mut result = LearnerResult::new(LearnerId { arm: 2, seed: 9 });
-        let mut rooms = vec![Sums::default(); 2];
-        rooms[1] = Sums { episodes: 1, successes: 1, steps: 7, collisions: 3, reward: -0.1, returned: 0.2 };
-        result.tests.push(TestResult { skill: 0, trials: 5, actions: 60, variant: 2, rooms });
-        result.rows = vec![1, 2, 3];
-        result.weights = vec![0.5, -0.0];
-        result.thresholds = vec![-2.0, 0.25];
-        let mut diverged = LearnerResult::new(LearnerId { arm: 0, seed: 1 });
-        diverged.divergence = Some(Divergence {
-            arm: "a".to_owned(),
-            point: 3,
-            seed: 1,
-            skill: "dock".to_owned(),
-            trial: 7,
-            what: "a weight is not finite".to_owned(),
-            transition: None,
-            weight: Some(Weight { tensor: "t".to_owned(), index: vec![1, 2], value: Number(f32::NEG_INFINITY) }),
-        });
-        vec![result, diverged, LearnerResult::new(LearnerId { arm: 0, seed: 2 })]
+/// Sums of test trials by the room in which each began: one entry per room of the world, and one for none.
+pub(super) fn by_room(world: &World, trials: impl Iterator<Item = (Vec2, Sums)>) -> Vec<Sums> {
+    let mut rooms = vec![Sums::default(); world.rooms.len() + 1];
+    for (start, trial) in trials {
+        rooms[world.room_of(start).unwrap_or(world.rooms.len())] += trial;
     }
-
-    #[test]
-    fn results_survive_a_round_trip() {
-        assert_eq!(decode(&encode(&example()).unwrap()), Ok(example()));
-    }
-
-    #[test]
-    fn every_truncation_is_seen() {
-        let bytes = encode(&example()).unwrap();
-        for length in 0..bytes.len() {
-            assert_eq!(decode(&bytes[..length]), Err(PartError), "{length} bytes");
-        }
-        assert_eq!(decode(&[bytes, vec![0]].concat()), Err(PartError));
-    }
+    rooms
 }

@@ -3,11 +3,11 @@
 use super::batch::{pretrain, train};
 use super::batch_group::{BatchGroup, LearnerId, group_of};
 use super::callbacks::{Callbacks, Interrupted};
-use super::checkpoint::{Checkpoint, CohortCallbacks, INTERVAL, SaveTimer};
-use super::cohort_state::CohortState;
+use super::checkpoint::{Checkpoint, CohortState};
+use super::cohort_callbacks::{CohortCallbacks, INTERVAL, SaveTimer};
 use super::committed::Parts;
 use super::pretraining::{Pretrained, Pretraining, SharedSkills, shared_skills};
-use super::schedule::{Wave, going_on, trials_of, waves};
+use super::schedule::{Wave, cohorts, waves};
 use super::write_results;
 use crate::backend::{Backend, BackendError};
 use crate::config::plan::Plan;
@@ -50,11 +50,9 @@ pub struct Options {
     pub checkpoint: Option<Duration>,
 }
 
-/// Trains every learner that the folder does not hold yet, then writes the tables, the nets and the manifest.
-///
-/// # Errors
-/// Where the folder or the device fails, or the callbacks stop it. What is committed or in the checkpoint is kept: the
-/// same call continues.
+/// Trains every learner that the folder does not hold yet, then writes the tables, the nets and the manifest. Where the
+/// folder or the device fails, or the callbacks stop it, what is committed or in the checkpoint is kept: the same call
+/// continues.
 pub fn run(
     plan: &Plan,
     groups: &[BatchGroup],
@@ -73,7 +71,7 @@ pub fn run(
         shared: shared_skills(plan),
         options,
         timer: SaveTimer::new(options.checkpoint.unwrap_or(INTERVAL)),
-        finished: parts.learners().map(|id| trials_of(&plan.arms[id.arm])).sum(),
+        finished: parts.learners().map(|id| plan.arms[id.arm].trials()).sum(),
         parts,
         folder: &mut folder,
         backend,
@@ -152,7 +150,7 @@ impl Run<'_> {
             let mut shared = Pretraining::default();
             if let Some((arm, seeds)) = pretraining {
                 shared.learners = seeds.into_iter().map(|seed| LearnerId { arm, seed }).collect();
-                self.pretrain(&mut shared, None)?;
+                self.pretrain(&mut shared, &mut None)?;
             }
             for learners in cohorts {
                 self.cohort(&shared, &learners, None)?;
@@ -165,17 +163,17 @@ impl Run<'_> {
     /// Goes on with learners that were saved, and then with all others that share their skills.
     fn resume(&mut self, mut shared: Pretraining, cohort: CohortState<'_>) -> Result<(), Interrupted> {
         let mut cohort = Some(cohort);
-        if !shared.learners.is_empty() && shared.done.is_none() {
-            self.pretrain(&mut shared, cohort.take())?;
+        if shared.done.is_none() {
+            self.pretrain(&mut shared, &mut cohort)?;
         }
         if let Some(cohort) = cohort {
             self.cohort(&shared, &cohort.learners(), Some(cohort))?;
         }
-        if let Some(first) = shared.learners.first() {
+        if let Some(heirs) = self.heirs(&shared) {
             let seeds: Vec<u32> = shared.learners.iter().map(|id| id.seed).collect();
-            let size = |bytes| self.size(bytes);
-            let done = |id: &LearnerId| self.parts.holds(id);
-            for learners in going_on(self.plan, self.groups, (first.arm, &seeds), size, done)? {
+            let most = self.size(heirs.bytes_per_learner(self.groups))?;
+            for learners in cohorts(self.plan, self.groups, heirs, &seeds, most, &|id: &LearnerId| self.parts.holds(id))
+            {
                 self.cohort(&shared, &learners, None)?;
             }
         }
@@ -188,25 +186,28 @@ impl Run<'_> {
         self.options.cohort.map_or_else(|| self.backend.cohort_size(bytes_per_learner), Ok)
     }
 
-    /// Trains the skills that arms share.
-    fn pretrain(&mut self, shared: &mut Pretraining, saved: Option<CohortState<'_>>) -> Result<(), Interrupted> {
+    /// Trains the skills that arms share, if they share any, from where they were saved or from nothing.
+    fn pretrain(&mut self, shared: &mut Pretraining, saved: &mut Option<CohortState<'_>>) -> Result<(), Interrupted> {
         let Some(first) = shared.learners.first() else { return Ok(()) };
         let (plan, group) = (self.plan, group_of(self.groups, first.arm));
         // A pretrained learner's trials count for every learner that will go on from it.
         let share = (self.lacking(shared).len() as u64, shared.learners.len() as u64);
         let before = self.finished;
         let (backend, mut callbacks) = self.watch(shared, before, share);
-        shared.done = Some(pretrain(plan, group, &shared.learners, saved, backend, &mut callbacks)?);
+        shared.done = Some(pretrain(plan, group, &shared.learners, saved.take(), backend, &mut callbacks)?);
         Ok(())
     }
 
+    /// The arms that go on from pretrained learners, if there are any.
+    fn heirs(&self, shared: &Pretraining) -> Option<&SharedSkills> {
+        let first = shared.learners.first()?;
+        self.shared.iter().find(|heirs| heirs.arms.binary_search(&first.arm).is_ok())
+    }
+
     /// The learners with these shared skills that are not finished.
-    fn lacking(&self, pretraining: &Pretraining) -> BTreeSet<LearnerId> {
-        let first = pretraining.learners.first().map(|first| first.arm);
-        let shared = first.and_then(|arm| self.shared.iter().find(|shared| shared.arms.binary_search(&arm).is_ok()));
-        let arms = shared.map_or(&[][..], |shared| &shared.arms);
-        let all =
-            pretraining.learners.iter().flat_map(|id| arms.iter().map(|arm| LearnerId { arm: *arm, seed: id.seed }));
+    fn lacking(&self, shared: &Pretraining) -> BTreeSet<LearnerId> {
+        let arms = self.heirs(shared).map_or(&[][..], |heirs| &heirs.arms);
+        let all = shared.learners.iter().flat_map(|id| arms.iter().map(|&arm| LearnerId { arm, seed: id.seed }));
         all.filter(|id| !self.parts.holds(id)).collect()
     }
 
@@ -224,7 +225,7 @@ impl Run<'_> {
         // Those whose turn is still to come have the trials of the shared skills behind them.
         let mut others = self.lacking(shared);
         others.retain(|id| !learners.contains(id));
-        let of = |id: &LearnerId| trials_of(&plan.arms[id.arm]);
+        let of = |id: &LearnerId| plan.arms[id.arm].trials();
         let of_root = |id: &LearnerId| plan.arms[id.arm].skills.last().map_or(0, |root| u64::from(root.params.trials));
         let before = self.finished + others.iter().map(|id| of(id) - of_root(id)).sum::<u64>();
         let (backend, mut callbacks) = self.watch(shared, before, (1, 1));

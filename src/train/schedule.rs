@@ -6,7 +6,8 @@
 
 use super::batch_group::{BatchGroup, LearnerId, group_index};
 use super::pretraining::{SharedSkills, shared_skills};
-use crate::config::plan::{ArmPlan, Plan};
+use crate::backend::BackendError;
+use crate::config::plan::Plan;
 use std::collections::BTreeMap;
 
 /// Cohorts that go on from the same pretrained learners.
@@ -20,21 +21,18 @@ pub struct Wave {
 
 /// The waves of a run, in order, without the learners that are `done`. `size` gives the most learners of a cohort
 /// from the bytes that one takes.
-///
-/// # Errors
-/// Those of `size`.
-pub fn waves<E>(
+pub fn waves(
     plan: &Plan,
     groups: &[BatchGroup],
-    mut size: impl FnMut(usize) -> Result<usize, E>,
+    mut size: impl FnMut(usize) -> Result<usize, BackendError>,
     done: impl Fn(&LearnerId) -> bool,
-) -> Result<Vec<Wave>, E> {
+) -> Result<Vec<Wave>, BackendError> {
     let mut waves = Vec::new();
     for shared in shared_skills(plan) {
-        let most = size(shared.bytes_per_learner(groups))?.max(1);
+        let most = size(shared.bytes_per_learner(groups))?;
         let open = shared.open_seeds(plan, &done);
         // Without pretraining, all seeds are in one wave.
-        let stretch = if shared.pretrained { most } else { open.len().max(1) };
+        let stretch = if shared.pretrained { most } else { open.len() };
         for seeds in parts(&open, stretch) {
             let pretraining = shared.pretrained.then(|| (shared.arms[0], seeds.to_vec()));
             waves.push(Wave { pretraining, cohorts: cohorts(plan, groups, &shared, seeds, most, &done) });
@@ -43,30 +41,8 @@ pub fn waves<E>(
     Ok(waves)
 }
 
-/// The cohorts that go on from an arm's pretrained learners of some seeds, without the learners that are `done`.
-///
-/// # Errors
-/// Those of `size`.
-pub fn going_on<E>(
-    plan: &Plan,
-    groups: &[BatchGroup],
-    (arm, seeds): (usize, &[u32]),
-    size: impl FnOnce(usize) -> Result<usize, E>,
-    done: impl Fn(&LearnerId) -> bool,
-) -> Result<Vec<Vec<LearnerId>>, E> {
-    let Some(shared) = shared_skills(plan).into_iter().find(|shared| shared.arms.contains(&arm)) else {
-        return Ok(Vec::new());
-    };
-    let most = size(shared.bytes_per_learner(groups))?.max(1);
-    Ok(cohorts(plan, groups, &shared, seeds, most, &done))
-}
-
-/// Trials of all skills of an arm.
-pub(super) fn trials_of(arm: &ArmPlan) -> u64 {
-    arm.skills.iter().map(|skill| u64::from(skill.params.trials)).sum()
-}
-
-fn cohorts(
+/// The cohorts of the arms that share skills, for some seeds, without the learners that are `done`.
+pub(super) fn cohorts(
     plan: &Plan,
     groups: &[BatchGroup],
     shared: &SharedSkills,
@@ -80,9 +56,9 @@ fn cohorts(
         _ => plan.arms[arm].skills.last().map_or(0, |root| root.params.trials),
     };
     let mut alike: BTreeMap<(usize, u32), Vec<LearnerId>> = BTreeMap::new();
-    for arm in &shared.arms {
-        let own = seeds.iter().map(|seed| LearnerId { arm: *arm, seed: *seed }).filter(|id| !done(id));
-        alike.entry((group_index(groups, *arm), trials(*arm))).or_default().extend(own);
+    for &arm in &shared.arms {
+        let own = seeds.iter().map(|&seed| LearnerId { arm, seed }).filter(|id| !done(id));
+        alike.entry((group_index(groups, arm), trials(arm))).or_default().extend(own);
     }
     alike.values().flat_map(|learners| parts(learners, most).map(<[LearnerId]>::to_vec)).collect()
 }

@@ -4,14 +4,15 @@
 //! the learners' memory and the tests that they have taken, and whoever goes on from there skips what lies behind.
 
 use super::batch_group::{BatchGroup, LearnerId};
-use super::callbacks::{Callbacks, Interrupted, Signal, Snapshot};
-use super::result::{LearnerResult, TestResult};
+use super::callbacks::{Callbacks, Interrupted, Signal};
+use super::checkpoint::CohortState;
+use super::result::{LearnerResult, TestResult, by_room, world_of};
 use crate::backend::{Backend, BackendError, Cohort, Stop, Test};
 use crate::config::plan::Plan;
 use crate::layout::{EPISODE_TERMINATED, Episode, LearnerState, PHASE_FAILED};
 use crate::run_folder::Sums;
-use crate::world::World;
 use glam::Vec2;
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
@@ -43,15 +44,16 @@ impl<'a> TrainLoop<'a> {
     /// Brings all learners through the trials of some skills, with every test on the way.
     pub(super) fn train(&mut self, skills: Range<usize>) -> Result<(), Interrupted> {
         let ids: Vec<LearnerId> = self.results.iter().map(|result| result.id).collect();
-        let world = self.plan.world_of(&self.plan.arms[self.group.arms[0]]);
         for skill in skills {
-            for point in test_points(self.plan, &ids, skill) {
+            let own = |id: &LearnerId| &self.plan.arms[id.arm].skills[skill];
+            let points: BTreeSet<u32> = ids.iter().flat_map(|id| own(id).test_points()).collect();
+            for point in points {
                 let states = self.reach(Stop { skill: skill as u32, trial: point })?;
-                let test = Evaluation { skill: skill as u32, trials: point, variant: 0, world };
-                let wanted = |index: usize| {
-                    states[index].phase != PHASE_FAILED && tested_at(self.plan, ids[index], skill, point)
+                let test = Evaluation { skill: skill as u32, trials: point, variant: 0 };
+                let wanted = |(id, state): (&LearnerId, &LearnerState)| {
+                    state.phase != PHASE_FAILED && own(id).test_points().any(|own| own == point)
                 };
-                let wanted: Vec<bool> = (0..ids.len()).map(wanted).collect();
+                let wanted: Vec<bool> = ids.iter().zip(&states).map(wanted).collect();
                 self.evaluate(&test, &wanted, &states, None)?;
             }
         }
@@ -79,7 +81,7 @@ impl<'a> TrainLoop<'a> {
     /// Tests the learners that are wanted and have not taken this test yet, some at a time.
     pub(super) fn evaluate(
         &mut self,
-        evaluation: &Evaluation<'_>,
+        evaluation: &Evaluation,
         wanted: &[bool],
         states: &[LearnerState],
         trained: Option<&Cohort>,
@@ -99,7 +101,8 @@ impl<'a> TrainLoop<'a> {
             let elapsed = begun.elapsed();
             for (index, own) in learners.clone().zip(episodes.chunks(count)) {
                 if wanted[index] && !evaluation.took(&self.results[index]) {
-                    self.results[index].tests.push(evaluation.result(states[index].actions, own));
+                    let result = &mut self.results[index];
+                    result.tests.push(evaluation.result(self.plan, result.id.arm, states[index].actions, own));
                 }
             }
             if elapsed > STRETCH {
@@ -124,51 +127,42 @@ impl<'a> TrainLoop<'a> {
             Some(cohort) => cohort,
             None => self.backend.memory()?,
         };
-        self.callbacks.save(&Snapshot { results: &self.results, cohort, trained: trained.is_some() })?;
+        self.callbacks.save(CohortState::new(&self.results, cohort, trained.is_some()))?;
         if signal == Signal::Stop { Err(Interrupted::Stopped) } else { Ok(()) }
     }
 }
 
 /// A test that learners take.
-pub(super) struct Evaluation<'a> {
+pub(super) struct Evaluation {
     /// Index of the skill.
     pub(super) skill: u32,
     /// Trials of the skill before the test.
     pub(super) trials: u32,
     /// As in [`TestResult::variant`].
     pub(super) variant: u32,
-    /// The floor plan whose rooms are counted.
-    pub(super) world: &'a World,
 }
 
-impl Evaluation<'_> {
+impl Evaluation {
     fn took(&self, result: &LearnerResult) -> bool {
         let own = (self.skill, self.trials, self.variant);
         result.tests.iter().any(|test| (test.skill, test.trials, test.variant) == own)
     }
 
-    fn result(&self, actions: u32, episodes: &[Episode]) -> TestResult {
-        let rooms = sums(self.world, episodes);
+    fn result(&self, plan: &Plan, arm: usize, actions: u32, episodes: &[Episode]) -> TestResult {
+        let trials = episodes.iter().map(|Episode { state, start_x, start_y, agent }| {
+            let sums = Sums {
+                episodes: 1,
+                successes: u32::from(*state == EPISODE_TERMINATED),
+                steps: agent.step,
+                collisions: agent.collisions,
+                reward: f64::from(agent.reward),
+                returned: f64::from(agent.returned),
+            };
+            (Vec2::new(*start_x, *start_y), sums)
+        });
+        let rooms = world_of(plan, arm, self.variant).map_or_else(Vec::new, |world| by_room(world, trials));
         TestResult { skill: self.skill, trials: self.trials, actions, variant: self.variant, rooms }
     }
-}
-
-/// Numbers of trials after which some of the learners are tested in a skill, ascending.
-fn test_points(plan: &Plan, learners: &[LearnerId], skill: usize) -> Vec<u32> {
-    let mut points = Vec::new();
-    for id in learners {
-        let own = &plan.arms[id.arm].skills[skill];
-        points.extend(own.eval_at.iter().copied().filter(|point| *point <= own.params.trials));
-        points.push(own.params.trials);
-    }
-    points.sort_unstable();
-    points.dedup();
-    points
-}
-
-fn tested_at(plan: &Plan, id: LearnerId, skill: usize, point: u32) -> bool {
-    let own = &plan.arms[id.arm].skills[skill];
-    point == own.params.trials || (point < own.params.trials && own.eval_at.contains(&point))
 }
 
 /// Trials that a learner has finished, over all skills.
@@ -176,20 +170,4 @@ fn trials_of(plan: &Plan, id: LearnerId, state: &LearnerState) -> u64 {
     let skills = &plan.arms[id.arm].skills;
     let before: u32 = skills.iter().take(state.skill as usize).map(|skill| skill.params.trials).sum();
     u64::from(before + state.trial)
-}
-
-/// Sums of a learner's test trials by the room in which they began; one entry per room of the world, and one for none.
-fn sums(world: &World, episodes: &[Episode]) -> Vec<Sums> {
-    let mut rooms = vec![Sums::default(); world.rooms.len() + 1];
-    for Episode { state, start_x, start_y, agent } in episodes {
-        rooms[world.room_of(Vec2::new(*start_x, *start_y)).unwrap_or(world.rooms.len())] += Sums {
-            episodes: 1,
-            successes: u32::from(*state == EPISODE_TERMINATED),
-            steps: agent.step,
-            collisions: agent.collisions,
-            reward: f64::from(agent.reward),
-            returned: f64::from(agent.returned),
-        };
-    }
-    rooms
 }

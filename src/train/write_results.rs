@@ -5,26 +5,19 @@ use super::callbacks::{Callbacks, Interrupted, Signal};
 use super::committed::Parts;
 use super::nets;
 use super::observation;
-use super::result::LearnerResult;
-use super::schedule::trials_of;
+use super::result::{LearnerResult, by_room, world_of};
 use super::trajectories::trajectories;
 use crate::backend::Backend;
-use crate::config::plan::Plan;
+use crate::config::plan::{ArmPlan, Plan};
 use crate::layout::TRIAL_WORDS;
-use crate::run_folder::failures::{self, write_failures};
-use crate::run_folder::sweep::{self, write_sweep};
 use crate::run_folder::tables::{EVALUATIONS, NO_ROOM, PLANNER, TRAINED, TRIALS, TableWriter};
-use crate::run_folder::trajectories::{self, write_trajectories};
-use crate::run_folder::{EvaluationRow, Provenance, RecordError, RunFolder, Sums, TrialRow, sensor_readings};
+use crate::run_folder::{EvaluationRow, Provenance, RecordError, RunFolder, Sums, TrialRow};
 use crate::world::World;
 use glam::Vec2;
 
 /// Writes the results of an experiment, all of whose learners are finished, and the manifest: one learner after
 /// another, so that the memory it takes does not grow with their number. What it did before it was stopped or killed
 /// does no harm: the parts stay until the manifest is there.
-///
-/// # Errors
-/// Where the folder or the device fails, or the callbacks stop it.
 pub fn finish(
     plan: &Plan,
     groups: &[BatchGroup],
@@ -40,7 +33,7 @@ pub fn finish(
     let file = files.begin(EVALUATIONS)?;
     let mut evaluations = TableWriter::new(&folder.dir().join(EVALUATIONS), file)?;
     let (mut failures, mut examples) = (Vec::new(), Vec::new());
-    let all = plan.arms.iter().map(trials_of).sum::<u64>() * plan.seeds.len() as u64;
+    let all = plan.arms.iter().map(ArmPlan::trials).sum::<u64>() * plan.seeds.len() as u64;
     for arm in 0..plan.arms.len() {
         for seed in &plan.seeds {
             if callbacks.progress(all) == Signal::Stop {
@@ -65,13 +58,13 @@ pub fn finish(
     bound_rows(plan, groups).into_iter().try_for_each(|row| evaluations.push(row))?;
     files.end(TRIALS, trials.finish()?)?;
     files.end(EVALUATIONS, evaluations.finish()?)?;
-    files.add(sensor_readings::FILE, &sensor_readings::write_places(&observation::places(plan.world(), backend)?)?)?;
-    files.add(trajectories::FILE, &write_trajectories(&examples)?)?;
+    files.add_json(&observation::places(plan.world(), backend)?)?;
+    files.add_json(&examples)?;
     if let Some(sweep) = &plan.sweep {
-        files.add(sweep::FILE, &write_sweep(sweep)?)?;
+        files.add_json(sweep)?;
     }
     if !failures.is_empty() {
-        files.add(failures::FILE, &write_failures(&failures)?)?;
+        files.add_json(&failures)?;
     }
     folder.complete(files, provenance(failures.len()))?;
     Ok(())
@@ -113,8 +106,7 @@ fn evaluation_rows(plan: &Plan, result: &LearnerResult) -> impl Iterator<Item = 
             variant: alteration.map_or(TRAINED, |alteration| &alteration.name).to_owned(),
             ..EvaluationRow::default()
         };
-        let world = alteration.and_then(|alteration| alteration.world).unwrap_or(arm.world);
-        by_room(row, &plan.worlds[world].world, &test.rooms)
+        world_of(plan, result.id.arm, test.variant).map_or_else(Vec::new, |world| rows_by_room(row, world, &test.rooms))
     })
 }
 
@@ -132,10 +124,8 @@ fn bound_rows(plan: &Plan, groups: &[BatchGroup]) -> Vec<EvaluationRow> {
         let arm = &plan.arms[group.arms[0]];
         let world = plan.world_of(arm);
         for (skill, tests) in arm.skills.iter().zip(&group.bounds) {
-            let mut rooms = vec![Sums::default(); world.rooms.len() + 1];
-            for test in tests.iter().flatten() {
-                let start = Vec2::new(test.start.x, test.start.y);
-                rooms[world.room_of(start).unwrap_or(world.rooms.len())] += Sums {
+            let trials = tests.iter().flatten().map(|test| {
+                let sums = Sums {
                     episodes: 1,
                     successes: u32::from(test.achieved()),
                     steps: test.steps(),
@@ -143,7 +133,8 @@ fn bound_rows(plan: &Plan, groups: &[BatchGroup]) -> Vec<EvaluationRow> {
                     reward: f64::from(test.reward()),
                     returned: f64::from(test.returned),
                 };
-            }
+                (Vec2::new(test.start.x, test.start.y), sums)
+            });
             let row = EvaluationRow {
                 arm: name.clone(),
                 point: arm.point,
@@ -151,7 +142,7 @@ fn bound_rows(plan: &Plan, groups: &[BatchGroup]) -> Vec<EvaluationRow> {
                 variant: TRAINED.to_owned(),
                 ..EvaluationRow::default()
             };
-            rows.extend(by_room(row, world, &rooms));
+            rows.extend(rows_by_room(row, world, &by_room(world, trials)));
         }
     }
     // Groups come in the order of their first arms.
@@ -160,7 +151,7 @@ fn bound_rows(plan: &Plan, groups: &[BatchGroup]) -> Vec<EvaluationRow> {
 }
 
 /// A row for each room of a world in which test trials began.
-fn by_room(row: EvaluationRow, world: &World, rooms: &[Sums]) -> Vec<EvaluationRow> {
+fn rows_by_room(row: EvaluationRow, world: &World, rooms: &[Sums]) -> Vec<EvaluationRow> {
     let begun = rooms.iter().enumerate().filter(|(_, sums)| sums.episodes > 0);
     let each = begun.map(|(room, sums)| {
         let room = world.rooms.get(room).map_or(NO_ROOM, |room| &room.name).to_owned();

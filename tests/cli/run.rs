@@ -51,7 +51,7 @@ fn another_experiments_folder_is_left_alone() {
     fs::remove_dir(&config).unwrap();
     fs::write(&config, saved).unwrap();
     // Somebody is at work there.
-    let lock = skilltree::run_folder::folder::lock(&skilltree::run_folder::file_system::FileSystem, &run).unwrap();
+    let lock = skilltree::run_folder::folder::lock(&skilltree::run_folder::file_system::OsFileSystem, &run).unwrap();
     sandbox.refuses(&line, 1, &["another skilltree process"]);
     sandbox.refuses(&["report", "run"], 1, &["another skilltree process"]);
     drop(lock);

@@ -1,7 +1,7 @@
 //! A disk of which one call fails.
 
 use super::memory::Memory;
-use skilltree::run_folder::file_system::{Disk, Kind, Lock, TryLockError, Writing};
+use skilltree::run_folder::file_system::{FileSystem, Kind, Lock, TryLockError, Writing};
 use std::ffi::OsString;
 use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
@@ -71,7 +71,7 @@ impl Faulty {
     }
 
     /// The same files, on a disk that is whole again.
-    pub(crate) fn repaired(&self) -> Arc<dyn Disk> {
+    pub(crate) fn repaired(&self) -> Arc<dyn FileSystem> {
         self.memory.clone()
     }
 
@@ -139,7 +139,7 @@ impl Writing for Stream<dyn Writing> {
     }
 }
 
-impl Disk for Faulty {
+impl FileSystem for Faulty {
     fn make_folder(&self, path: &Path) -> io::Result<()> {
         self.call("make folder", path)?;
         self.memory.make_folder(path)

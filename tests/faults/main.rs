@@ -17,7 +17,7 @@ use faulty::{Fault, Faulty, Plan};
 use memory::Memory;
 use skilltree::cli::CliError;
 use skilltree::report;
-use skilltree::run_folder::file_system::Disk;
+use skilltree::run_folder::file_system::FileSystem;
 use skilltree::run_folder::{Manifest, RecordError};
 use skilltree::train::run::RunError;
 use std::collections::BTreeMap;
@@ -65,12 +65,12 @@ fn undisturbed() -> &'static Reference {
     static REFERENCE: OnceLock<Reference> = OnceLock::new();
     REFERENCE.get_or_init(|| {
         let disk = Faulty::new(Memory::default(), None);
-        experiment().run(&(Arc::new(disk.clone()) as Arc<dyn Disk>), &folder()).unwrap();
+        experiment().run(&(Arc::new(disk.clone()) as Arc<dyn FileSystem>), &folder()).unwrap();
         let log = disk.log();
         // Where the parts can no longer be removed, they are still there.
         let call = log.iter().position(|(what, path)| *what == "remove file" && in_parts(path)).unwrap();
         let kept = Faulty::new(Memory::default(), Some(Plan { call, lasting: true, fault: Fault::Device }));
-        experiment().run(&(Arc::new(kept.clone()) as Arc<dyn Disk>), &folder()).unwrap();
+        experiment().run(&(Arc::new(kept.clone()) as Arc<dyn FileSystem>), &folder()).unwrap();
         let parts: Files = kept.memory.files().into_iter().filter(|(path, _)| in_parts(path)).collect();
         assert_eq!(parts.len(), 2);
         let files = visible(disk.memory.files());
@@ -125,7 +125,7 @@ fn disturbed(plan: Plan) {
     let call = &undisturbed().log[plan.call];
     let what = format!("{plan:?}, {} of {}", call.0, call.1.display());
     let disk = Faulty::new(Memory::default(), Some(plan));
-    let outcome = experiment().run(&(Arc::new(disk.clone()) as Arc<dyn Disk>), &folder());
+    let outcome = experiment().run(&(Arc::new(disk.clone()) as Arc<dyn FileSystem>), &folder());
     assert_eq!(&disk.log()[plan.call], call, "{what}: the calls come in another order");
     let left = visible(disk.memory.files());
     nothing_half_written(&left, &what);
@@ -190,7 +190,7 @@ fn a_run_survives_every_fault_of_every_call() {
 }
 
 /// Told to stop, and then to go on: a checkpoint lies in between.
-fn stopped_and_gone_on(disk: &Arc<dyn Disk>) -> Result<(), RunError> {
+fn stopped_and_gone_on(disk: &Arc<dyn FileSystem>) -> Result<(), RunError> {
     match experiment().stop(disk, &folder()) {
         Err(RunError::Stopped { .. }) => experiment().run(disk, &folder()),
         other => other,
@@ -200,7 +200,7 @@ fn stopped_and_gone_on(disk: &Arc<dyn Disk>) -> Result<(), RunError> {
 #[test]
 fn a_stopped_run_survives_a_fault_of_every_call() {
     let whole = Faulty::new(Memory::default(), None);
-    stopped_and_gone_on(&(Arc::new(whole.clone()) as Arc<dyn Disk>)).unwrap();
+    stopped_and_gone_on(&(Arc::new(whole.clone()) as Arc<dyn FileSystem>)).unwrap();
     assert!(visible(whole.memory.files()) == undisturbed().files);
     let log = whole.log();
     let checkpoint = folder().join("checkpoint");
@@ -211,7 +211,7 @@ fn a_stopped_run_survives_a_fault_of_every_call() {
         let plan = Plan { call, lasting: call / 4 % 2 == 0, fault: Fault::ERRORS[call % 4] };
         let what = format!("{plan:?}, {asked:?}");
         let disk = Faulty::new(Memory::default(), Some(plan));
-        let outcome = stopped_and_gone_on(&(Arc::new(disk.clone()) as Arc<dyn Disk>));
+        let outcome = stopped_and_gone_on(&(Arc::new(disk.clone()) as Arc<dyn FileSystem>));
         let mut left = visible(disk.memory.files());
         left.remove(&checkpoint);
         nothing_half_written(&left, &what);
@@ -231,7 +231,7 @@ fn a_run_survives_a_power_cut_at_every_call() {
         let what = format!("power cut at call {call}, {:?}", undisturbed().log[call]);
         let disk = Faulty::new(Memory::default(), Some(Plan { call, lasting: true, fault: Fault::Device }));
         // It fails, or its last word is that it is complete.
-        let outcome = experiment().run(&(Arc::new(disk.clone()) as Arc<dyn Disk>), &folder());
+        let outcome = experiment().run(&(Arc::new(disk.clone()) as Arc<dyn FileSystem>), &folder());
         let seen = disk.memory.files();
         let memory = disk.memory.after_a_power_cut();
         let kept = visible(memory.files());
@@ -244,14 +244,14 @@ fn a_run_survives_a_power_cut_at_every_call() {
         assert!(complete || parts >= committed, "{what}: {parts} parts of {committed}, of {} seen", seen.len());
         assert!(outcome.is_err() || complete, "{what}");
         with_parts += usize::from(parts > 0);
-        let disk: Arc<dyn Disk> = Arc::new(memory);
+        let disk: Arc<dyn FileSystem> = Arc::new(memory);
         experiment().run(&disk, &folder()).unwrap_or_else(|error| panic!("{what}: {error}"));
     }
     assert!(with_parts > 10, "no power cut while there were parts");
 }
 
 /// A report on a disk; its folder holds a complete run.
-fn reported(disk: Arc<dyn Disk>) -> Result<(), CliError> {
+fn reported(disk: Arc<dyn FileSystem>) -> Result<(), CliError> {
     report::write_on(disk, &folder()).map(drop).map_err(CliError::Report)
 }
 
@@ -259,7 +259,7 @@ fn reported(disk: Arc<dyn Disk>) -> Result<(), CliError> {
 fn a_report_survives_a_fault_of_every_call() {
     let run = || {
         let disk = Arc::new(Memory::default());
-        experiment().run(&(disk.clone() as Arc<dyn Disk>), &folder()).unwrap();
+        experiment().run(&(disk.clone() as Arc<dyn FileSystem>), &folder()).unwrap();
         disk.files()
     };
     let run = run();

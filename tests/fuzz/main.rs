@@ -14,7 +14,7 @@ mod within;
 
 use campaign::campaign;
 use memory::Memory;
-use skilltree::run_folder::file_system::Disk;
+use skilltree::run_folder::file_system::FileSystem;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
@@ -31,7 +31,7 @@ fn files() -> &'static BTreeMap<PathBuf, Vec<u8>> {
     static FILES: OnceLock<BTreeMap<PathBuf, Vec<u8>>> = OnceLock::new();
     FILES.get_or_init(|| {
         let memory = Arc::new(Memory::default());
-        let disk: Arc<dyn Disk> = memory.clone();
+        let disk: Arc<dyn FileSystem> = memory.clone();
         experiment().run(&disk, &folder()).unwrap();
         memory.files()
     })

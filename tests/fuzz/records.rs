@@ -5,16 +5,14 @@ use super::within::folder;
 use super::{experiment, file, files, mutate, somewhere};
 use crate::memory::Memory;
 use skilltree::backend::cpu::cpu_backend;
-use skilltree::run_folder::failures::read_failures;
-use skilltree::run_folder::file_system::Disk;
+use skilltree::run_folder::file_system::FileSystem;
 use skilltree::run_folder::manifest::Manifest;
-use skilltree::run_folder::sensor_readings::read_places;
-use skilltree::run_folder::sweep::read_sweep;
-use skilltree::run_folder::trajectories::read_trajectories;
 use skilltree::run_folder::weights::read_weights;
+use skilltree::run_folder::{Divergence, JsonFile, PlaceReading, Sweep, Trajectory};
 use skilltree::train::batch::train;
 use skilltree::train::checkpoint::Checkpoint;
-use skilltree::train::result::{LearnerResult, decode, encode};
+use skilltree::train::codec::{encode, read};
+use skilltree::train::result::LearnerResult;
 use skilltree::train::run::RunError;
 use snap::{read::FrameDecoder, write::FrameEncoder};
 use std::io::{Read, Write};
@@ -53,6 +51,7 @@ fn compressed(random: &mut mutate::StepRandom, seeds: &[Vec<u8>]) -> Vec<u8> {
 #[test]
 fn parts() {
     let seeds = [bytes(&results()), bytes(&results()[..1]), bytes(&[])];
+    let decode = read::<Vec<LearnerResult>>;
     let read = |input: &[u8]| match decode(input) {
         // Results with NaN are equal to none: their bytes tell.
         Ok(results) if decode(&bytes(&results)).is_ok_and(|again| bytes(&again) == bytes(&results)) => Ok(true),
@@ -68,7 +67,7 @@ fn vouched_parts() {
     let seeds = [bytes(&results()), bytes(&results()[..1])];
     let experiment = experiment();
     let read = |input: &[u8]| {
-        let disk: Arc<dyn Disk> = Arc::new(Memory::default());
+        let disk: Arc<dyn FileSystem> = Arc::new(Memory::default());
         let mut run = experiment.open(&disk, &folder()).unwrap();
         run.commit_part("2-of-2_arm0-seed0_arm0-seed1", input).unwrap();
         drop(run);
@@ -81,7 +80,7 @@ fn vouched_parts() {
 #[test]
 fn checkpoints() {
     let experiment = experiment();
-    let disk: Arc<dyn Disk> = Arc::new(Memory::default());
+    let disk: Arc<dyn FileSystem> = Arc::new(Memory::default());
     assert!(matches!(experiment.stop(&disk, &folder()), Err(RunError::Stopped { .. })));
     let seed = experiment.open(&disk, &folder()).unwrap().read_checkpoint().unwrap();
     let seeds = [seed.expect("a checkpoint")];
@@ -112,21 +111,21 @@ fn json() {
     let sweep = r#"{"axes":[{"key":"skill.dock.max_steps","label":"steps","scale":"linear","values":[5,10]},
         {"key":"world","label":"world","scale":"list","values":["a","b"]}],
         "points":[[5,"a"],[5,"b"],[10,"a"]],"design":"grid"}"#;
-    assert!(read_sweep(sweep.as_bytes(), somewhere()).is_ok());
+    assert!(Sweep::parse(sweep.as_bytes(), somewhere()).is_ok());
     let transition = r#"{"taught":true,"lesson":3,"mirrored":false,"step":2,"child":"move+12","record":[1,2],
         "inputs":[0.5],"q":[0.25,"NaN"],"target":"inf"}"#;
     let failures = format!(
         r#"[{{"arm":"a","point":0,"seed":1,"skill":"dock","trial":7,"what":"w","transition":{transition},"weight":null}}]"#
     );
-    assert!(read_failures(failures.as_bytes(), somewhere()).is_ok());
+    assert!(Vec::<Divergence>::parse(failures.as_bytes(), somewhere()).is_ok());
     let mut seeds = ["manifest.json", "places.json", "trajectories.json"].map(file).to_vec();
     seeds.extend([sweep.as_bytes().to_vec(), failures.into_bytes()]);
     let read = |input: &[u8]| {
         let manifest = Manifest::parse(input, somewhere()).is_ok();
-        let places = read_places(input, somewhere()).is_ok();
-        let sweep = read_sweep(input, somewhere()).is_ok();
-        let failures = read_failures(input, somewhere()).is_ok();
-        Ok(manifest | places | sweep | failures | read_trajectories(input, somewhere()).is_ok())
+        let places = Vec::<PlaceReading>::parse(input, somewhere()).is_ok();
+        let sweep = Sweep::parse(input, somewhere()).is_ok();
+        let failures = Vec::<Divergence>::parse(input, somewhere()).is_ok();
+        Ok(manifest | places | sweep | failures | Vec::<Trajectory>::parse(input, somewhere()).is_ok())
     };
     campaign("json", |random| mutate::text(random, &seeds), read).conclude("json");
 }
@@ -156,7 +155,7 @@ fn folders() {
             }
         }
         let memory = Arc::new(Memory::of(&files));
-        let disk: Arc<dyn Disk> = memory.clone();
+        let disk: Arc<dyn FileSystem> = memory.clone();
         Ok(experiment.run(&disk, &folder()).is_ok())
     };
     campaign("folders", make, read).conclude("folders");

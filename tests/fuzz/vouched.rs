@@ -5,7 +5,7 @@ use super::memory::Memory;
 use super::within::folder;
 use super::{file, files, mutate, somewhere};
 use skilltree::report::{self, ReportError};
-use skilltree::run_folder::file_system::Disk;
+use skilltree::run_folder::file_system::FileSystem;
 use skilltree::run_folder::manifest::FileDigest;
 use skilltree::run_folder::tables::{parse_evaluations, parse_trials, write_table};
 use skilltree::run_folder::{FinishedRun, Manifest};
@@ -93,7 +93,7 @@ fn reports() {
     let make = |random: &mut mutate::StepRandom| random.draw_step().to_le_bytes().to_vec();
     let read = |input: &[u8]| {
         let mut random = mutate::StepRandom::new(u64::from_le_bytes(input.try_into().unwrap()));
-        let disk: Arc<dyn Disk> = Arc::new(Memory::of(&nonsense(&mut random)));
+        let disk: Arc<dyn FileSystem> = Arc::new(Memory::of(&nonsense(&mut random)));
         let Ok(run) = FinishedRun::read_on(disk, &folder()) else { return Ok(false) };
         match report::render(&run) {
             Ok(_) => {}

@@ -2,10 +2,10 @@
 
 mod tables;
 
-use skilltree::run_folder::sensor_readings::{read_places, write_places};
 use skilltree::run_folder::weights::{read_weights, write_weights};
 use skilltree::run_folder::{
-    FORMAT, FinishedRun, Manifest, NetWeights, PlaceReading, Provenance, RecordError, RunFolder, SkillWeights, State,
+    FORMAT, FinishedRun, JsonFile, Manifest, NetWeights, PlaceReading, Provenance, RecordError, RunFolder,
+    SkillWeights, State,
 };
 use std::collections::BTreeMap;
 use std::fs;
@@ -57,12 +57,12 @@ fn damaged_weights_give_errors() {
 fn places_come_back_and_extra_keys_are_allowed() {
     let reading =
         PlaceReading { place: "L1".into(), x: 330.0, y: 100.5, heading: 90.0, sonar: [7; 24], light: [1; 24] };
-    let bytes = write_places(std::slice::from_ref(&reading)).unwrap();
-    assert_eq!(read_places(&bytes, Path::new("p")).unwrap(), vec![reading]);
+    let bytes = vec![reading.clone()].to_bytes().unwrap();
+    assert_eq!(Vec::<PlaceReading>::parse(&bytes, Path::new("p")).unwrap(), vec![reading]);
     let extra = String::from_utf8(bytes.clone()).unwrap().replace("\"place\"", "\"room\": \"A\", \"place\"");
-    assert_eq!(read_places(extra.as_bytes(), Path::new("p")).unwrap().len(), 1);
+    assert_eq!(Vec::<PlaceReading>::parse(extra.as_bytes(), Path::new("p")).unwrap().len(), 1);
     for length in 0..bytes.len() - 2 {
-        assert!(read_places(&bytes[..length], Path::new("p")).is_err(), "cut to {length}");
+        assert!(Vec::<PlaceReading>::parse(&bytes[..length], Path::new("p")).is_err(), "cut to {length}");
     }
 }
 

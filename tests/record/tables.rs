@@ -109,7 +109,9 @@ fn sums_go_into_a_row_and_out_of_it_and_add_up() {
     assert_eq!(EvaluationRow { successes: 0, r#return: 0.0, ..row.clone() }.with_sums(row.sums()), row);
     let one = Sums { episodes: 1, successes: 2, steps: 3, collisions: 4, reward: 0.5, returned: -0.25 };
     let three = Sums { episodes: 3, successes: 6, steps: 9, collisions: 12, reward: 1.5, returned: -0.75 };
-    assert_eq!([one; 3].into_iter().sum::<Sums>(), three);
+    let mut sum = Sums::default();
+    [one; 3].into_iter().for_each(|one| sum += one);
+    assert_eq!(sum, three);
 }
 
 #[derive(Clone, ParquetRecordWriter)]

@@ -13,9 +13,8 @@ use skilltree::report::bootstrap_rng::BootstrapRng;
 use skilltree::report::figure::spread;
 use skilltree::report::summary::summarise;
 use skilltree::report::{ReportError, write};
-use skilltree::run_folder::sensor_readings::write_places;
 use skilltree::run_folder::tables::write_table;
-use skilltree::run_folder::{EvaluationRow, Names, PlaceReading, Provenance, RecordError, RunFolder, Sums};
+use skilltree::run_folder::{EvaluationRow, JsonFile, Names, PlaceReading, Provenance, RecordError, RunFolder, Sums};
 use skilltree::world::{Pose, World, load};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -117,7 +116,7 @@ fn run_folder(dir: &Path, seeds: u32) {
     };
     let files = [
         ("evaluations.parquet".to_owned(), write_table(&rows).unwrap()),
-        ("places.json".to_owned(), write_places(&readings(&world)).unwrap()),
+        ("places.json".to_owned(), readings(&world).to_bytes().unwrap()),
     ];
     RunFolder::open(dir, config, &[("world.toml", OFFICE)]).unwrap().finish(files, provenance).unwrap();
 }

@@ -5,8 +5,7 @@ use crate::hand_made_tables::HandMadeTables;
 use crate::{OFFICE, scratch};
 use skilltree::report::write;
 use skilltree::run_folder::tables::write_table;
-use skilltree::run_folder::trajectories::write_trajectories;
-use skilltree::run_folder::{Provenance, RunFolder, Trajectory};
+use skilltree::run_folder::{JsonFile, Provenance, RunFolder, Trajectory};
 use std::fs;
 use std::path::Path;
 
@@ -26,7 +25,7 @@ fn finish(dir: &Path, made: &HandMadeTables, config: &str, worlds: &[(&str, &str
     let files = [
         ("trials.parquet".to_owned(), write_table(&made.trials).unwrap()),
         ("evaluations.parquet".to_owned(), write_table(&made.tests).unwrap()),
-        ("trajectories.json".to_owned(), write_trajectories(trajectories).unwrap()),
+        ("trajectories.json".to_owned(), trajectories.to_vec().to_bytes().unwrap()),
     ];
     RunFolder::open(dir, config, worlds).unwrap().finish(files, provenance).unwrap();
 }

@@ -1,7 +1,7 @@
 //! A disk in memory that knows what would survive a power cut: the content that was synced of files whose entries were
 //! synced, up to the root, and nothing else.
 
-use skilltree::run_folder::file_system::{Disk, Kind, Lock, TryLockError, Writing};
+use skilltree::run_folder::file_system::{FileSystem, Kind, Lock, TryLockError, Writing};
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::io::{self, Cursor, ErrorKind, Read, Write};
@@ -144,7 +144,7 @@ impl Drop for Holder {
     }
 }
 
-impl Disk for Memory {
+impl FileSystem for Memory {
     fn make_folder(&self, path: &Path) -> io::Result<()> {
         let mut at = Arc::clone(&self.root);
         for name in path.strip_prefix("/").map_err(|_| ErrorKind::InvalidInput)? {

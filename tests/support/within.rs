@@ -3,7 +3,7 @@
 use skilltree::backend::cpu::cpu_backend;
 use skilltree::config::plan::Plan;
 use skilltree::config::{Overrides, load};
-use skilltree::run_folder::file_system::Disk;
+use skilltree::run_folder::file_system::FileSystem;
 use skilltree::run_folder::{Provenance, RunFolder, State};
 use skilltree::train::batch_group::{BatchGroup, groups};
 use skilltree::train::callbacks::{Callbacks, Signal};
@@ -45,22 +45,22 @@ impl Experiment {
         Self { plan, groups }
     }
 
-    pub(crate) fn open(&self, disk: &Arc<dyn Disk>, dir: &Path) -> Result<RunFolder, RunError> {
+    pub(crate) fn open(&self, disk: &Arc<dyn FileSystem>, dir: &Path) -> Result<RunFolder, RunError> {
         let worlds: Vec<(&str, &str)> = self.plan.worlds.iter().map(|world| (&*world.file, &*world.text)).collect();
         Ok(RunFolder::open_on(Arc::clone(disk), dir, &self.plan.resolved, &worlds)?)
     }
 
     /// What the program does between reading the config and reporting: a learner is a cohort, so that there are parts.
-    pub(crate) fn run(&self, disk: &Arc<dyn Disk>, dir: &Path) -> Result<(), RunError> {
+    pub(crate) fn run(&self, disk: &Arc<dyn FileSystem>, dir: &Path) -> Result<(), RunError> {
         self.watched(disk, dir, &mut ())
     }
 
     /// As [`Experiment::run`], but told to stop as soon as a learner has begun: a checkpoint is left.
-    pub(crate) fn stop(&self, disk: &Arc<dyn Disk>, dir: &Path) -> Result<(), RunError> {
+    pub(crate) fn stop(&self, disk: &Arc<dyn FileSystem>, dir: &Path) -> Result<(), RunError> {
         self.watched(disk, dir, &mut Impatient)
     }
 
-    fn watched(&self, disk: &Arc<dyn Disk>, dir: &Path, callbacks: &mut dyn Callbacks) -> Result<(), RunError> {
+    fn watched(&self, disk: &Arc<dyn FileSystem>, dir: &Path, callbacks: &mut dyn Callbacks) -> Result<(), RunError> {
         let folder = self.open(disk, dir)?;
         if folder.state() == State::Complete {
             return Ok(());

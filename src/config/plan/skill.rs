@@ -1,9 +1,10 @@
 //! What a skill is: its children, its inputs, what pays, what ends it.
 
 use crate::layout::{Action, HyperParams, Input};
+use serde::Serialize;
 
 /// A skill as defined in TOML.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SkillPlan {
     /// Key of the skill in the config.
     pub name: String,
@@ -30,6 +31,7 @@ pub struct SkillPlan {
     /// [`RegionEvent::number`]: crate::layout::RegionEvent::number
     pub regions: Vec<String>,
     /// Every number with which it is learned and carried out; all but the seeds, which each learner has of its own.
+    #[serde(serialize_with = "super::as_bytes")]
     pub params: HyperParams,
 }
 
@@ -37,6 +39,12 @@ impl SkillPlan {
     /// Whether the children are skills.
     pub fn is_high(&self) -> bool {
         self.children.iter().any(|child| matches!(child, Child::Skill(_)))
+    }
+
+    /// Numbers of trials after which it is tested, ascending.
+    pub fn test_points(&self) -> impl Iterator<Item = u32> {
+        let trials = self.params.trials;
+        self.eval_at.iter().copied().filter(move |at| *at < trials).chain([trials])
     }
 
     /// Children that have an applicability threshold.
@@ -65,7 +73,7 @@ impl SkillPlan {
 }
 
 /// What a skill can choose: nothing else tells elementary from high-level skills.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum Child {
     /// A primitive action.
     Action(Action),
@@ -84,7 +92,7 @@ impl Child {
 }
 
 /// From which value of its best child on a skill is applicable (paper, section VI.B).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub enum Threshold {
     /// Set by hand, in units of Q (reward / `reward_scale`).
     Fixed(f32),

@@ -16,7 +16,10 @@ use skilltree::train::trajectories::trajectories;
 use tempfile::TempDir;
 
 fn summed(rooms: &[Sums]) -> Sums {
-    rooms.iter().copied().sum()
+    rooms.iter().fold(Sums::default(), |mut sum, room| {
+        sum += *room;
+        sum
+    })
 }
 
 #[test]

@@ -6,9 +6,9 @@ mod pages;
 use crate::OFFICE;
 use skilltree::report::summary::{Summary, summarise};
 use skilltree::report::sweep::SweepResults;
-use skilltree::run_folder::sweep::{Axis, AxisValue, Design, FILE, Scale, write_sweep};
+use skilltree::run_folder::sweep::{Axis, AxisValue, Design, Scale};
 use skilltree::run_folder::tables::write_table;
-use skilltree::run_folder::{Divergence, EvaluationRow, Names, Provenance, RunFolder, Sweep};
+use skilltree::run_folder::{Divergence, EvaluationRow, JsonFile, Names, Provenance, RunFolder, Sweep};
 use std::path::Path;
 
 pub(crate) const COLUMNS: u32 = 6;
@@ -114,7 +114,7 @@ pub(crate) fn folder(dir: &Path, sweep: &Sweep, rows: &[EvaluationRow], seeds: u
     let provenance = Provenance { backend: "cpu".into(), seeds: (0..seeds).collect(), ..Provenance::default() };
     let files = [
         ("evaluations.parquet".to_owned(), write_table(rows).unwrap()),
-        (FILE.to_owned(), write_sweep(sweep).unwrap()),
+        (Sweep::NAME.to_owned(), sweep.to_bytes().unwrap()),
     ];
     RunFolder::open(dir, "", &[("world.toml", OFFICE)]).unwrap().finish(files, provenance).unwrap();
 }

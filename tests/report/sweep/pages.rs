@@ -4,9 +4,9 @@ use super::{ROWS, SEEDS, TESTS, axis, folder, grid, known, names, peak, rows, su
 use crate::{OFFICE, close, scratch};
 use skilltree::report::sweep::{SweepResults, main_effect};
 use skilltree::report::write;
-use skilltree::run_folder::sweep::{Axis, AxisValue, Design, FILE, Scale, write_sweep};
+use skilltree::run_folder::sweep::{Axis, AxisValue, Design, Scale};
 use skilltree::run_folder::tables::write_table;
-use skilltree::run_folder::{Provenance, RunFolder, Sweep};
+use skilltree::run_folder::{JsonFile, Provenance, RunFolder, Sweep};
 use std::fs;
 
 #[test]
@@ -143,7 +143,7 @@ fn failures_are_read_from_the_run() {
     let files = [
         ("evaluations.parquet".to_owned(), write_table(&rows).unwrap()),
         ("failures.json".to_owned(), failures.as_bytes().to_vec()),
-        (FILE.to_owned(), write_sweep(&thresholds()).unwrap()),
+        (Sweep::NAME.to_owned(), thresholds().to_bytes().unwrap()),
     ];
     RunFolder::open(&dir, "", &[("world.toml", OFFICE)]).unwrap().finish(files, provenance).unwrap();
     let said = write(&dir).unwrap().summary;
