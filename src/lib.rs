@@ -100,13 +100,12 @@
 //!   in the pair `env/memory`.
 //! - **an action**: a row in `layout/actions.rs`; a turn needs no more. A move other than forward and backward takes its
 //!   case in the pair `env/motion` and in `backend/cpu/lanes/contact.rs`.
-//! - **a reward event**: a row in `layout/events.rs`; where it is found, in the pair `env/events` and its call in `env/step`;
-//!   a line in `teacher/task.rs`, so that the planner teaches for it. An event of regions needs no call: its row, and
-//!   `crossing_events` in the pair.
+//! - **a reward event**: a row in `layout/events.rs`; where it is found, in the pair `env/events` (`observed_events` or
+//!   `crossing_events`): the planner asks the same functions.
 //! - **a hyper-parameter**: a row in `layout/params.rs`, which makes the key, its reader, its reference page, the learner's
 //!   record and the field in WGSL; its use in a kernel pair.
-//! - **an optimiser**: a word in `layout/choices.rs`, a pair in `qnet/optimiser/`, its call in the pair `qnet/backward`, a
-//!   branch in `backend/cpu/lanes/optimiser.rs`.
+//! - **an optimiser**: a word in `layout/choices.rs`, a pair in `qnet/optimiser/`, its name and its call in the pair
+//!   `qnet/optimiser/mod`. A form for the lanes of a CPU is a branch in `backend/cpu/lanes/optimiser.rs`, and optional.
 //! - **a statistic**: a function in `report/statistics/`, a field in `report/page.rs`, a column in its template.
 //!
 //! # Where this differs from the first design, and why

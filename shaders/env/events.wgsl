@@ -57,6 +57,11 @@ fn following_wall(near: u32, far: u32, action: u32, events: u32) -> u32 {
     return on_left | on_right;
 }
 
+// All events that are found from what is observed after an action.
+fn observed_events(near: u32, far: u32, action: u32, events: u32) -> u32 {
+    return following_wall(near, far, action, events) | seeing_light(events);
+}
+
 // `LIT` where some bearing is lit after an action.
 fn seeing_light(events: u32) -> u32 {
     let lit = lit_bearings() != 0u && (events & ACTED) == ACTED;

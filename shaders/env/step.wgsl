@@ -3,8 +3,7 @@
 fn observe_and_score(lane: u32, skill: u32) {
     let s = params_base + skill;
     observe(lane, agent.x, agent.y, agent.heading, agent.bumpers, params[s].noise);
-    agent.events |= following_wall(params[s].beside_near, params[s].beside_far, agent.action, agent.events);
-    agent.events |= seeing_light(agent.events);
+    agent.events |= observed_events(params[s].beside_near, params[s].beside_far, agent.action, agent.events);
     agent.earned = reward_of(skill, skill_events(skill));
     agent.reward = agent.reward + agent.earned;
     agent.returned = agent.returned + agent.discount * agent.earned;

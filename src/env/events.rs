@@ -7,6 +7,10 @@ use crate::layout::{Area, EVENTS, Observation, RAYS, REGION_EVENTS, WorldUniform
 
 /// Stands for no room.
 pub const NOWHERE: u32 = 255;
+/// Events that an observation tells after a forward move.
+pub const OBSERVED_AHEAD: u32 = BESIDE_RIGHT | BESIDE_LEFT | OBSERVED;
+/// Those that it tells after any action.
+pub const OBSERVED: u32 = LIT;
 /// First ray of the sector on the left, 30 degrees from straight ahead. Our choice.
 pub const SIDE_FIRST: usize = 2;
 /// Last ray of it, 150 degrees from straight ahead. Our choice: it bridges a doorway.
@@ -70,6 +74,11 @@ impl Observation {
         let on_left = if went && left >= near && left <= far { BESIDE_LEFT } else { 0 };
         let on_right = if went && right >= near && right <= far { BESIDE_RIGHT } else { 0 };
         on_left | on_right
+    }
+
+    /// All events that are found from what is observed after an action.
+    pub fn observed_events(&self, near: u32, far: u32, action: u32, events: u32) -> u32 {
+        self.following_wall(near, far, action, events) | self.seeing_light(events)
     }
 
     /// [`LIT`] where some bearing is lit after an action.

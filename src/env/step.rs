@@ -13,8 +13,7 @@ impl Workgroup<'_> {
         let (x, y, heading, bumpers) = (self.agent.x, self.agent.y, self.agent.heading, self.agent.bumpers);
         (self.forms.observe)(self, x, y, heading, bumpers, self.params[s].noise);
         let (near, far) = (self.params[s].beside_near, self.params[s].beside_far);
-        self.agent.events |= self.record.observation.following_wall(near, far, self.agent.action, self.agent.events);
-        self.agent.events |= self.record.observation.seeing_light(self.agent.events);
+        self.agent.events |= self.record.observation.observed_events(near, far, self.agent.action, self.agent.events);
         self.agent.earned = self.reward_of(skill, self.skill_events(skill));
         self.agent.reward += self.agent.earned;
         self.agent.returned += self.agent.discount * self.agent.earned;

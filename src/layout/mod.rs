@@ -18,6 +18,7 @@ pub mod purpose;
 mod records;
 pub mod schema;
 pub mod sensors;
+pub mod shader;
 mod shape;
 mod sizes;
 mod state;

@@ -2,25 +2,14 @@
 
 use super::forward::lanes_used;
 use crate::env::workgroup::Workgroup;
-use crate::layout::choices::{OPTIMISER_ADAM_ROWS, OPTIMISER_SGD};
 
 impl Workgroup<'_> {
     /// Moves the net of `child` so that its output changes by about `delta` times the learning rate `step_size`.
     pub fn backward(&mut self, skill: u32, child: u32, delta: f32, step_size: f32) {
-        let optimiser = self.params[skill as usize].optimiser;
         let units = lanes_used(self.params[skill as usize].hidden);
         let number = if self.skills[skill as usize].nets == 1 { 0 } else { child };
         let output = child - number;
         let errors = self.net_errors(units, skill, number, child, delta);
-        if optimiser == OPTIMISER_SGD {
-            self.sgd(units, skill, number, output, &errors, step_size);
-        } else {
-            let rate = self.bias_corrected_rate(skill, number, step_size);
-            if optimiser == OPTIMISER_ADAM_ROWS {
-                self.adam_rows(units, skill, number, output, &errors, rate);
-            } else {
-                self.adam(units, skill, number, output, &errors, rate);
-            }
-        }
+        self.optimise(units, skill, number, output, &errors, step_size);
     }
 }

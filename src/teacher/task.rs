@@ -5,7 +5,8 @@ use crate::backend::cpu::lanes::draws::place_of;
 use crate::backend::cpu::lanes::light::{brightness, falloff, light_in_sight};
 use crate::backend::cpu::lanes::sonar::{ranges, rays};
 use crate::config::plan::{Action, Event, RegionEvent, SkillPlan};
-use crate::env::motion::{ACTED, BESIDE_LEFT, BESIDE_RIGHT, COLLISION, LIT};
+use crate::env::events::{OBSERVED, OBSERVED_AHEAD};
+use crate::env::motion::{ACTED, COLLISION};
 use crate::env::sonar::sonar_reading;
 use crate::env::workgroup::CohortData;
 use crate::layout::{Area, Observation, RAYS, SKILL_EVENTS};
@@ -54,7 +55,7 @@ impl Task {
     /// Whether a turn, too, may earn something or end a trial.
     pub(super) fn pays_turns(&self) -> bool {
         let inside = (0..self.regions.len()).map(|region| 1 << RegionEvent::In.number(region));
-        self.matters & inside.fold(ACTED | LIT, |bits, bit: u32| bits | bit) != 0
+        self.matters & inside.fold(ACTED | OBSERVED, |bits, bit: u32| bits | bit) != 0
     }
 
     /// For a trial that began in room `origin`.
@@ -62,12 +63,10 @@ impl Task {
         let moved = body_after(&shared.floor, pose.x, pose.y, pose.heading, action as u32, slip);
         let after = Pose { x: moved.x, y: moved.y, heading: moved.heading };
         let mut events = moved.events | shared.floor.plan.passed_door(origin, moved.x, moved.y) | ACTED;
-        if action == Action::Forward && self.matters & (BESIDE_RIGHT | BESIDE_LEFT) != 0 {
+        let told = if action == Action::Forward { OBSERVED_AHEAD } else { OBSERVED };
+        if self.matters & told != 0 {
             let (near, far) = self.beside;
-            events |= noiseless_sonar(shared, after).following_wall(near, far, action as u32, events);
-        }
-        if self.matters & LIT != 0 && sees_light(shared, after) {
-            events |= LIT;
+            events |= noiseless_observation(shared, after).observed_events(near, far, action as u32, events);
         }
         for (region, area) in self.regions.iter().enumerate() {
             events |= area.crossing_events(pose.x, pose.y, moved.x, moved.y) << RegionEvent::In.number(region);
@@ -78,27 +77,21 @@ impl Task {
     }
 }
 
-/// What the sonar shows at a pose, without noise; the other sensors show nothing.
-fn noiseless_sonar(shared: &CohortData, pose: Pose) -> Observation {
-    let (sine, cosine) = sin_cos(pose.heading);
+/// What sonar and light show at a pose, without noise; the other sensors show nothing.
+fn noiseless_observation(shared: &CohortData, pose: Pose) -> Observation {
+    let (floor, Pose { x, y, heading }) = (&shared.floor, pose);
+    let (sine, cosine) = sin_cos(heading);
     let (ux, uy) = rays(cosine, sine);
-    let range = ranges(&shared.floor, pose.x, pose.y, &ux, &uy);
+    let range = ranges(floor, x, y, &ux, &uy);
     let mut seen = Observation::zeroed();
     for ray in 0..RAYS {
         seen.sonar[ray / 4] |= sonar_reading(range[place_of(ray)], 1.0) << (8 * (ray % 4));
     }
-    seen
-}
-
-/// Whether some bearing is lit at a pose, without noise.
-fn sees_light(shared: &CohortData, pose: Pose) -> bool {
-    let floor = &shared.floor;
-    let most = falloff(floor, pose.x, pose.y);
-    if floor.plan.lit == 0 || most <= 1.0 || !light_in_sight(floor, pose.x, pose.y) {
-        return false;
+    let most = falloff(floor, x, y);
+    if floor.plan.lit == 1 && most > 1.0 && light_in_sight(floor, x, y) {
+        let bright = brightness(floor, most, x, y, &ux, &uy);
+        let lit = (0..RAYS).filter(|bearing| bright[place_of(*bearing)] > 1.0);
+        seen.light_bumpers = lit.fold(0, |bits, bearing| bits | 1 << bearing);
     }
-    let (sine, cosine) = sin_cos(pose.heading);
-    let (ux, uy) = rays(cosine, sine);
-    let bright = brightness(floor, most, pose.x, pose.y, &ux, &uy);
-    (0..RAYS).any(|bearing| bright[place_of(bearing)] > 1.0)
+    seen
 }

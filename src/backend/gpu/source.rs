@@ -1,21 +1,10 @@
 //! The text of every shipped kernel: its files, opened by the shared constants and structs.
 
 use crate::layout::prelude::prelude;
+use crate::layout::shader::parts;
+use crate::qnet::optimiser;
 
-/// One WGSL file.
-#[derive(Debug, Clone, Copy)]
-pub struct Part {
-    /// Path below `shaders/`; its twin has the same path below `src/`.
-    pub path: &'static str,
-    /// The file's text.
-    pub text: &'static str,
-}
-
-macro_rules! parts {
-    ($($path:literal),* $(,)?) => {
-        &[$(Part { path: $path, text: include_str!(concat!("../../../shaders/", $path)) }),*]
-    };
-}
+pub use crate::layout::shader::Part;
 
 /// One kernel. Its entry point bears its name.
 #[derive(Debug, Clone, Copy)]
@@ -71,16 +60,14 @@ const TRIAL: &[Part] = parts![
 const LEARNING: &[Part] = parts![
     "qnet/weights.wgsl",
     "qnet/gradient.wgsl",
-    "qnet/optimiser/sgd.wgsl",
-    "qnet/optimiser/adam.wgsl",
-    "qnet/optimiser/adam_rows.wgsl",
     "qnet/backward.wgsl",
     "learn/lesson.wgsl",
     "learn/td_lambda.wgsl",
 ];
 
 /// Moves learners on.
-pub const TRAIN: Kernel = Kernel { name: "train", parts: &[parts!["kernels/train.wgsl"], MATH, BODY, TRIAL, LEARNING] };
+pub const TRAIN: Kernel =
+    Kernel { name: "train", parts: &[parts!["kernels/train.wgsl"], MATH, BODY, TRIAL, LEARNING, optimiser::PARTS] };
 
 /// Runs test trials.
 pub const EVALUATE: Kernel = Kernel { name: "evaluate", parts: &[parts!["kernels/evaluate.wgsl"], MATH, BODY, TRIAL] };

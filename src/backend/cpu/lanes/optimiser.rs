@@ -1,7 +1,7 @@
 //! The optimisers, a row of weights at a time.
 
 use crate::env::workgroup::{Nets, Workgroup};
-use crate::layout::choices::{OPTIMISER_ADAM_ROWS, OPTIMISER_SGD};
+use crate::layout::choices::{OPTIMISER_ADAM, OPTIMISER_ADAM_ROWS, OPTIMISER_SGD};
 use crate::layout::{HyperParams, LANES, MAX_INPUTS, MAX_ROWS, SkillShape};
 use crate::math::functions::{flush, reciprocal_sqrt};
 use crate::math::reduce::Lanes;
@@ -10,6 +10,9 @@ use crate::qnet::gradient::NetErrors;
 
 /// Rows whose step sizes are found together: a divisor of `MAX_ROWS`.
 const ROW_BLOCK: usize = 16;
+
+/// Rules that have a form here; any other is carried out as its plain twin has it.
+const TUNED: [u32; 3] = [OPTIMISER_SGD, OPTIMISER_ADAM, OPTIMISER_ADAM_ROWS];
 
 /// One net's update.
 struct Update<'a> {
@@ -209,6 +212,9 @@ fn momentum_step<const UNITS: usize>(
 #[inline(always)]
 pub fn backward(group: &mut Workgroup<'_>, skill: u32, child: u32, delta: f32, step_size: f32) {
     let (shape, params) = (&group.skills[skill as usize], &group.params[skill as usize]);
+    if !TUNED.contains(&params.optimiser) {
+        return group.backward(skill, child, delta, step_size);
+    }
     let number = if shape.nets == 1 { 0 } else { child };
     let moments = params.optimiser != OPTIMISER_SGD;
     let rate = if moments { group.bias_corrected_rate(skill, number, step_size) } else { step_size };
