@@ -115,7 +115,7 @@ fn steps(robots: &[u32], quanta: &[u32]) {
     }
 }
 
-/// Kernel `advance`, replay alone.
+/// Kernel `train`, replay alone.
 fn replay(learners: &[u32], rules: &str, variants: &str, transitions: u64, deadline: Instant) -> bool {
     let mut equal = true;
     // One device each, so that a kernel is compiled once for each number of words held.

@@ -1,6 +1,5 @@
 //! Trains four docking robots and says how often each docks: `cargo run --release --example train`.
 
-use skilltree::run_folder::tables::{EVALUATIONS, read_evaluations};
 use skilltree::{BackendChoice, Experiment, Overrides, open_backend};
 use std::ops::ControlFlow;
 
@@ -14,7 +13,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ControlFlow::Continue(())
     })?;
     eprintln!();
-    let (_, rows) = read_evaluations(&run.dir().join(EVALUATIONS))?;
+    let (_, rows) = run.evaluations()?;
     let last = rows.iter().map(|row| row.trials).max().unwrap_or(0);
     for seed in 0..4 {
         let own = rows.iter().filter(|row| row.seed == seed && row.trials == last);

@@ -95,18 +95,21 @@
 //!
 //! # How to add
 //!
-//! - **a sensor** that a net is given: a row in `layout/sensors.rs`; a branch in the pair `policy/features` (`encode` or
-//!   `scalar_feature`). What is remembered between steps also takes a field of `layout::Agent` or `layout::Step` and a line
-//!   in the pair `env/memory`.
+//! - **a sensor**, as a new reading for nets from what the robot senses: a row in `layout/sensors.rs`; a branch in the pair
+//!   `policy/features` (`encode` or `scalar_feature`). What is remembered between steps also takes a field of
+//!   `layout::Agent` or `layout::Step` and a line in the pair `env/memory`.
 //! - **an action**: a row in `layout/actions.rs`; a turn needs no more. A move other than forward and backward takes its
 //!   case in the pair `env/motion` and in `backend/cpu/lanes/contact.rs`.
-//! - **a reward event**: a row in `layout/events.rs`; where it is found, in the pair `env/events` (`observed_events` or
-//!   `crossing_events`): the planner asks the same functions.
+//! - **a reward event**: a row in `layout/events.rs`, which also says whether the sensors tell of it; where it is found,
+//!   in the pair `env/events` (`observed_events` or `crossing_events`): the planner asks the same functions.
 //! - **a hyper-parameter**: a row in `layout/params.rs`, which makes the key, its reader, its reference page, the learner's
 //!   record and the field in WGSL; its use in a kernel pair.
 //! - **an optimiser**: a word in `layout/choices.rs`, a pair in `qnet/optimiser/`, its name and its call in the pair
 //!   `qnet/optimiser/mod`. A form for the lanes of a CPU is a branch in `backend/cpu/lanes/optimiser.rs`, and optional.
-//! - **a statistic**: a function in `report/statistics/`, a field in `report/page.rs`, a column in its template.
+//! - **a statistic**: a function in a file of `report/statistics/`, a field in `report/page.rs`, a column in its template.
+//! - **a number measured in trials**: a field of `layout::Agent`, its sum in the pair `env/step`; a field of
+//!   `run_folder::Sums` and its column; where sums are taken of tests and of the planner's (`train/train_loop.rs`,
+//!   `train/write_results.rs`). What a report shows of it is a field of its `Score`, and a statistic.
 //!
 //! # Where this differs from the first design, and why
 //!
@@ -174,4 +177,4 @@ pub use backend::open::{BackendChoice, BackendOptions, open_backend};
 pub use backend::{Backend, BackendError};
 pub use config::{ConfigError, Files, MemoryFiles, Overrides};
 pub use experiment::{Experiment, ExperimentError, Progress};
-pub use run_folder::{FinishedRun, RecordError};
+pub use run_folder::{EvaluationRow, FinishedRun, Names, RecordError, TrialRow};

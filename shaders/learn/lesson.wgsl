@@ -46,7 +46,7 @@ fn write_step(lane: u32, words: u32, lesson: u32, step: u32) {
 fn write_outcome(lane: u32, words: u32, lesson: u32, step: u32, events: u32, earned: f32) {
     let at = lesson + LESSON_HEADER_WORDS + step * words;
     if lane == 0u {
-        lessons[at + STEP_CHOICE] |= events << EVENTS_FROM;
+        lessons[at + STEP_CHOICE] |= (events & RECORDED_EVENTS) << EVENTS_FROM;
         lessons[at + STEP_REWARD] = bitcast<u32>(earned);
     }
 }

@@ -143,7 +143,9 @@ fn pose_of(text: &str, world: &World) -> Result<Pose, CliError> {
         return Ok(*pose);
     }
     let places: Vec<&str> = world.places.iter().map(|(name, _)| name.as_str()).collect();
-    let hint = format!("write --at X,Y,HEADING, as in --at 60,60,225, or the name of a place: {}", places.join(", "));
+    let named =
+        if places.is_empty() { String::new() } else { format!(", or the name of a place: {}", places.join(", ")) };
+    let hint = format!("write --at X,Y,HEADING, as in --at 60,60,225{named}");
     let numbers: Vec<f32> = text.split(',').filter_map(|part| part.trim().parse().ok()).collect();
     let [x, y, heading] = numbers[..] else {
         return Err(usage(format!("--at {text}: not three numbers"), &hint));

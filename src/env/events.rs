@@ -7,10 +7,6 @@ use crate::layout::{Area, EVENTS, Observation, RAYS, REGION_EVENTS, WorldUniform
 
 /// Stands for no room.
 pub const NOWHERE: u32 = 255;
-/// Events that an observation tells after a forward move.
-pub const OBSERVED_AHEAD: u32 = BESIDE_RIGHT | BESIDE_LEFT | OBSERVED;
-/// Those that it tells after any action.
-pub const OBSERVED: u32 = LIT;
 /// First ray of the sector on the left, 30 degrees from straight ahead. Our choice.
 pub const SIDE_FIRST: usize = 2;
 /// Last ray of it, 150 degrees from straight ahead. Our choice: it bridges a doorway.

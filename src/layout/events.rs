@@ -9,7 +9,7 @@ pub const DECISION_BIT: u32 = 31;
 
 macro_rules! events {
     ($($(#[doc = $doc:literal])+ $name:ident = $bit:ident $number:literal, $text:literal,
-        mirror $mirror:ident, needs $needs:expr;)*) => {
+        mirror $mirror:ident, needs $needs:expr, told $told:ident;)*) => {
         /// Something that one primitive step can bring about; its number is its place in rewards.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         #[repr(u32)]
@@ -44,6 +44,11 @@ macro_rules! events {
                 match self { $(Self::$name => $needs),* }
             }
 
+            /// After which actions the sensors tell whether it happened.
+            const fn told(self) -> Told {
+                match self { $(Self::$name => Told::$told),* }
+            }
+
             /// When it happens, in words.
             pub const fn doc(self) -> &'static str {
                 match self { $(Self::$name => concat!($($doc),+)),* }
@@ -58,20 +63,43 @@ macro_rules! events {
 
 events! {
     /// The charger stopped a forward move with the contact point within the tolerance of the heading.
-    Docked = DOCKED 0, "docked", mirror Docked, needs Some(WorldPart::Charger);
+    Docked = DOCKED 0, "docked", mirror Docked, needs Some(WorldPart::Charger), told Never;
     /// A move was cut short by contact with anything, and did not dock.
-    Collision = COLLISION 1, "collision", mirror Collision, needs None;
+    Collision = COLLISION 1, "collision", mirror Collision, needs None, told Never;
     /// The centre reached another room than the one before and is clear of the doorway.
-    PassedDoor = PASSED_DOOR 2, "passed-door", mirror PassedDoor, needs Some(WorldPart::Doors);
+    PassedDoor = PASSED_DOOR 2, "passed-door", mirror PassedDoor, needs Some(WorldPart::Doors), told Never;
     /// A forward move that was not blocked left the nearest sonar reading 30 to 150 degrees to the right between
     /// `robot.beside.near` and `robot.beside.far`.
-    BesideRight = BESIDE_RIGHT 3, "beside-right", mirror BesideLeft, needs None;
+    BesideRight = BESIDE_RIGHT 3, "beside-right", mirror BesideLeft, needs None, told Ahead;
     /// The same on the left.
-    BesideLeft = BESIDE_LEFT 4, "beside-left", mirror BesideRight, needs None;
+    BesideLeft = BESIDE_LEFT 4, "beside-left", mirror BesideRight, needs None, told Ahead;
     /// After the action some bearing of the light sensor is lit.
-    Lit = LIT 5, "lit", mirror Lit, needs Some(WorldPart::Light);
+    Lit = LIT 5, "lit", mirror Lit, needs Some(WorldPart::Light), told Always;
     /// An action was taken, whatever came of it: what it is paid is the cost of a step.
-    Acted = ACTED 6, "step", mirror Acted, needs None;
+    Acted = ACTED 6, "step", mirror Acted, needs None, told Never;
+}
+
+/// After which actions the sensors tell whether something happened.
+#[derive(Clone, Copy)]
+enum Told {
+    /// The motion alone tells.
+    Never,
+    /// After forward moves.
+    Ahead,
+    Always,
+}
+
+impl Event {
+    /// Bits of the events that the sensors tell of after an action: after a forward move, or any other.
+    pub const fn told_by_sensors(ahead: bool) -> u32 {
+        let (mut bits, mut event) = (0, 0);
+        while event < EVENTS {
+            let told = matches!((Self::ALL[event].told(), ahead), (Told::Always, _) | (Told::Ahead, true));
+            bits |= if told { Self::ALL[event].bit() } else { 0 };
+            event += 1;
+        }
+        bits
+    }
 }
 
 macro_rules! region_events {
@@ -135,10 +163,12 @@ pub(super) const CODES: &[(&str, u32)] = &[
     ("MAX_REGIONS", MAX_REGIONS as u32),
     ("SKILL_EVENTS", SKILL_EVENTS as u32),
     ("EVENTS_FROM", EVENTS_FROM),
+    ("RECORDED_EVENTS", RECORDED_EVENTS),
     ("DECISION_BIT", DECISION_BIT),
 ];
 /// Name in shaders and value of every event's bit.
 pub(super) const EVENT_BITS: [&[(&str, u32)]; 2] = [&BITS, &REGION_BITS];
 
 const _: () = assert!(SKILL_EVENTS <= 32, "the events of a skill fit no word");
-const _: () = assert!(EVENTS_FROM + EVENTS as u32 <= DECISION_BIT, "an event's bit would meet the decision bit");
+/// The events that have a bit in recorded choices: the first ones, as many as fit below the decision bit.
+pub const RECORDED_EVENTS: u32 = (1 << (DECISION_BIT - EVENTS_FROM)) - 1;

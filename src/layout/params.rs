@@ -187,7 +187,7 @@ params! {
         applicability: u32 = "skill.*.applicability", "true", Flag, Paper;
         /// A running child that stops being applicable may be left.
         interrupt: u32 = "skill.*.interrupt", "true", Flag, Ours;
-        /// Steps without any event after which a running child may be left, 0 for never.
+        /// Steps after which a running child may be left though nothing has ended it, 0 for never.
         child_timeout: u32 = "skill.*.child_timeout", "30", Whole(0, 255), Ours;
         /// Primitive steps after which a trial is cut; 30 is the paper's for docking.
         max_steps: u32 = "skill.*.max_steps", "30", Whole(1, 255), Paper;

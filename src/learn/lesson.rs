@@ -5,7 +5,7 @@
 //! step later, by the observation that settles them.
 
 use crate::env::workgroup::Workgroup;
-use crate::layout::events::{DECISION_BIT, EVENTS_FROM};
+use crate::layout::events::{DECISION_BIT, EVENTS_FROM, RECORDED_EVENTS};
 use crate::layout::{LESSON_HEADER_WORDS, LessonHeader, Step, TERMINATED, TrialRecord};
 use crate::policy::persistence::Choices;
 use std::mem::offset_of;
@@ -66,7 +66,7 @@ impl Workgroup<'_> {
     /// Adds what step `step` of the lesson brought about.
     pub fn write_outcome(&mut self, words: usize, lesson: usize, step: usize, events: u32, earned: f32) {
         let at = lesson + LESSON_HEADER_WORDS + step * words;
-        self.lessons[at + STEP_CHOICE] |= events << EVENTS_FROM;
+        self.lessons[at + STEP_CHOICE] |= (events & RECORDED_EVENTS) << EVENTS_FROM;
         self.lessons[at + STEP_REWARD] = earned.to_bits();
     }
 

@@ -5,11 +5,9 @@ use super::summary::{self, Summary};
 use super::sweep::SweepResults;
 use super::training::{self, TrainingCurve};
 use crate::config::ConfigError;
-use crate::run_folder::tables::{self, parse_evaluations, parse_trials};
 use crate::run_folder::{Divergence, FinishedRun, PlaceReading, RecordError, Trajectory, folder};
 use crate::world::{World, load};
 use std::collections::BTreeMap;
-use std::path::Path;
 
 /// An error in making a report.
 #[derive(Debug, thiserror::Error)]
@@ -50,12 +48,12 @@ impl RunResults {
     /// # Errors
     /// If one of them is damaged or, as a floor plan, of another version of skilltree.
     pub fn read(run: &FinishedRun) -> Result<Self, ReportError> {
-        let (names, rows) = read(run, tables::EVALUATIONS, parse_evaluations)?;
+        let (names, rows) = run.evaluations()?;
         let seeds = &run.manifest().provenance.seeds;
         let failures: Vec<Divergence> = run.json()?.unwrap_or_default();
         let mut summary = summary::summarise(&names, &rows, seeds, &failures);
         let swept = run.json()?.map(|sweep| SweepResults::new(sweep, &summary, seeds));
-        let (names, mut rows) = read(run, tables::TRIALS, parse_trials)?;
+        let (names, mut rows) = run.trials()?;
         if swept.is_some() {
             summary = summary.first_points();
             let first = |arm: &str| {
@@ -81,14 +79,4 @@ impl RunResults {
             worlds,
         })
     }
-}
-
-/// The content of a file that a run may lack.
-fn read<T: Default>(
-    run: &FinishedRun,
-    file: &str,
-    parse: impl Fn(Vec<u8>, &Path) -> Result<T, RecordError>,
-) -> Result<T, ReportError> {
-    let Some(bytes) = run.content(file)? else { return Ok(T::default()) };
-    Ok(parse(bytes, &run.dir().join(file))?)
 }

@@ -3,7 +3,8 @@
 use super::file_system::{FileSystem, Kind, OsFileSystem};
 use super::manifest::FileDigest;
 use super::paths::{CONFIG, WORLD, list, tally};
-use super::{JsonFile, Manifest, RecordError};
+use super::tables::{EVALUATIONS, TRIALS, parse_evaluations, parse_trials};
+use super::{EvaluationRow, JsonFile, Manifest, Names, RecordError, TrialRow};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -82,6 +83,18 @@ impl FinishedRun {
     /// A JSON file, or none if the run has none.
     pub fn json<T: JsonFile>(&self) -> Result<Option<T>, RecordError> {
         self.content(T::NAME)?.map(|bytes| T::parse(&bytes, &self.dir.join(T::NAME))).transpose()
+    }
+
+    /// All tests of all skills, and the names that their numbers stand for; nothing where the run has no table of them.
+    pub fn evaluations(&self) -> Result<(Names, Vec<EvaluationRow>), RecordError> {
+        let parse = |bytes| parse_evaluations(bytes, &self.dir.join(EVALUATIONS));
+        self.content(EVALUATIONS)?.map_or_else(|| Ok(Default::default()), parse)
+    }
+
+    /// All training trials, and the names that their numbers stand for; nothing where the run has no table of them.
+    pub fn trials(&self) -> Result<(Names, Vec<TrialRow>), RecordError> {
+        let parse = |bytes| parse_trials(bytes, &self.dir.join(TRIALS));
+        self.content(TRIALS)?.map_or_else(|| Ok(Default::default()), parse)
     }
 
     /// As [`FinishedRun::content`], for a file of text.

@@ -1,6 +1,6 @@
 //! Demonstrations: the bank of taught lessons, and the planner's own tests.
 
-use super::value_iteration::{Planner, origin_of};
+use super::value_iteration::Planner;
 use crate::backend::cpu::CPU;
 use crate::config::plan::SkillPlan;
 use crate::env::reset::{start_pose, start_region};
@@ -149,7 +149,6 @@ impl Teacher<'_> {
             lessons: &mut lesson,
             ..Workgroup::new(self.shared, std::slice::from_ref(self.params), &CPU.hot)
         };
-        let origin = origin_of(self.shared, start);
         let words = self.plan.record_words as usize;
         let all = (1 << self.plan.children) - 1;
         let free = Choices { applicable: all, offered: all, allowed: all, decision: 1 };
@@ -174,7 +173,7 @@ impl Teacher<'_> {
                 return Demonstration { start, lesson, returned };
             }
             let pose = Pose { x: group.agent.x, y: group.agent.y, heading: group.agent.heading };
-            let child = self.planner.choose(self.shared, origin, pose) as u32;
+            let child = self.planner.choose(self.shared, group.agent.origin, pose) as u32;
             group.set_choice(child, free);
             group.write_step(words, 0, step as usize);
             group.apply_action(0, self.plan.child[child as usize]);

@@ -5,8 +5,7 @@ use crate::backend::cpu::lanes::draws::place_of;
 use crate::backend::cpu::lanes::light::{brightness, falloff, light_in_sight};
 use crate::backend::cpu::lanes::sonar::{ranges, rays};
 use crate::config::plan::{Action, Event, RegionEvent, SkillPlan};
-use crate::env::events::{OBSERVED, OBSERVED_AHEAD};
-use crate::env::motion::{ACTED, COLLISION};
+use crate::env::motion::{ACTED, COLLISION, PASSED_DOOR};
 use crate::env::sonar::sonar_reading;
 use crate::env::workgroup::CohortData;
 use crate::layout::{Area, Observation, RAYS, SKILL_EVENTS};
@@ -33,6 +32,8 @@ pub(super) struct Task {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Outcome {
     pub(super) pose: Pose,
+    /// The room from which the next door counts.
+    pub(super) origin: u32,
     pub(super) reward: f32,
     pub(super) ended: bool,
 }
@@ -52,19 +53,23 @@ impl Task {
         self.matters & event.bit() != 0
     }
 
+    /// Whether a trial may go on after a door that pays: then what a room is worth depends on the others.
+    pub(super) fn goes_on_after_doors(&self) -> bool {
+        self.names(Event::PassedDoor) && self.ends & PASSED_DOOR == 0
+    }
+
     /// Whether a turn, too, may earn something or end a trial.
     pub(super) fn pays_turns(&self) -> bool {
         let inside = (0..self.regions.len()).map(|region| 1 << RegionEvent::In.number(region));
-        self.matters & inside.fold(ACTED | OBSERVED, |bits, bit: u32| bits | bit) != 0
+        self.matters & inside.fold(ACTED | Event::told_by_sensors(false), |bits, bit: u32| bits | bit) != 0
     }
 
-    /// For a trial that began in room `origin`.
+    /// What an action does at a pose; the next door counts from room `origin`.
     pub(super) fn outcome(&self, shared: &CohortData, origin: u32, pose: Pose, action: Action, slip: f32) -> Outcome {
         let moved = body_after(&shared.floor, pose.x, pose.y, pose.heading, action as u32, slip);
         let after = Pose { x: moved.x, y: moved.y, heading: moved.heading };
         let mut events = moved.events | shared.floor.plan.passed_door(origin, moved.x, moved.y) | ACTED;
-        let told = if action == Action::Forward { OBSERVED_AHEAD } else { OBSERVED };
-        if self.matters & told != 0 {
+        if self.matters & Event::told_by_sensors(action == Action::Forward) != 0 {
             let (near, far) = self.beside;
             events |= noiseless_observation(shared, after).observed_events(near, far, action as u32, events);
         }
@@ -73,7 +78,9 @@ impl Task {
         }
         let paid: f32 = (0..SKILL_EVENTS).filter(|i| (events >> i) & 1 == 1).map(|i| self.reward[i]).sum();
         let reward = if events & COLLISION == 0 { paid } else { paid - self.collision_cost };
-        Outcome { pose: after, reward, ended: events & self.ends != 0 }
+        let passed = self.goes_on_after_doors() && events & PASSED_DOOR != 0;
+        let origin = if passed { shared.floor.plan.room_of(moved.x, moved.y) } else { origin };
+        Outcome { pose: after, origin, reward, ended: events & self.ends != 0 }
     }
 }
 

@@ -7,7 +7,6 @@ use super::grid::{Between, HEADING_STEP, HEADINGS, PoseGrid};
 use super::slip::{SLIPS, slips};
 use super::task::{Outcome, Task};
 use crate::config::plan::{Action, Event, Noise, SkillPlan};
-use crate::env::events::NOWHERE;
 use crate::env::workgroup::CohortData;
 use crate::world::{Pose, World};
 use glam::Vec2;
@@ -17,7 +16,7 @@ use rayon::prelude::*;
 const TOLERANCE: f32 = 1.0e-5;
 /// A move that gets less far than this, inches, gets nowhere.
 const STUCK: f32 = 0.5;
-/// More sweeps than any discount below 1 needs for [`TOLERANCE`] in worlds of this size.
+/// Sweeps after which values are taken as they are: a discount of 0.994 reaches [`TOLERANCE`] before.
 const MOST_SWEEPS: usize = 2_000;
 
 /// The solved task: how good every pose is, and what to do there.
@@ -66,16 +65,19 @@ impl Planner {
             backward_cost,
             slips: slips(&noise),
         };
-        planner.values = (0..origins).map(|origin| planner.solve(shared, origin as u32)).collect();
+        // Rooms that do not depend on one another are solved apart, each to its own precision.
+        let apart = if planner.task.goes_on_after_doors() { origins } else { 1 };
+        let first = (0..origins).step_by(apart);
+        planner.values = first.flat_map(|first| planner.solve(shared, first as u32, apart)).collect();
         planner
     }
 
-    /// Value of a pose, in reward units, for a trial that began in room `origin`.
+    /// Value of a pose, in reward units; the next door counts from room `origin`.
     pub fn value(&self, origin: u32, pose: Pose) -> f32 {
         self.grid.interpolate(&self.values[self.origin_index(origin)], pose)
     }
 
-    /// Position in the skill's children of the best one at a pose, for a trial that began in room `origin`.
+    /// Position in the skill's children of the best one at a pose; the next door counts from room `origin`.
     pub fn choose(&self, shared: &CohortData, origin: u32, pose: Pose) -> usize {
         let mut best = (0, f32::NEG_INFINITY);
         for (child, action) in self.children.iter().enumerate() {
@@ -97,13 +99,13 @@ impl Planner {
 
     /// Expected return of an action at a pose and of the best ones after it.
     pub fn worth(&self, shared: &CohortData, origin: u32, pose: Pose, action: Action) -> f32 {
-        let values = &self.values[self.origin_index(origin)];
         let cost = if action == Action::Backward { self.backward_cost } else { 0.0 };
         let expected: f32 = self
             .slips
             .iter()
             .map(|(slip, weight)| {
                 let outcome = self.task.outcome(shared, origin, pose, action, *slip);
+                let values = &self.values[self.origin_index(outcome.origin)];
                 let after = if outcome.ended { 0.0 } else { self.grid.interpolate(values, outcome.pose) };
                 weight * (outcome.reward + self.discount * after)
             })
@@ -137,27 +139,32 @@ impl Planner {
         if (origin as usize) < self.values.len() { origin as usize } else { 0 }
     }
 
-    /// Values of all grid poses for trials that began in room `origin`.
-    fn solve(&self, shared: &CohortData, origin: u32) -> Vec<f32> {
+    /// Values of all grid poses, for each of these rooms from which the next door counts.
+    fn solve(&self, shared: &CohortData, first: u32, origins: usize) -> Vec<Vec<f32>> {
         let points: Vec<usize> = (0..self.grid.free.len()).filter(|point| self.grid.free[*point]).collect();
-        let successors = self.successors(shared, origin, &points);
+        let of_origin = |origin: usize| self.successors(shared, first, first + origin as u32, &points);
+        let successors: Vec<Successors> = (0..origins).map(of_origin).collect();
         let scale = self.task.reward.iter().fold(0.0_f32, |most, amount| most.max(amount.abs())).max(1.0e-6);
-        let mut values = vec![0.0; self.grid.free.len() * HEADINGS];
-        let mut fresh = vec![[0.0; HEADINGS]; points.len()];
+        let mut values = vec![vec![0.0; self.grid.free.len() * HEADINGS]; origins];
+        let mut fresh = vec![vec![[0.0; HEADINGS]; points.len()]; origins];
         for _sweep in 0..MOST_SWEEPS {
-            fresh.par_iter_mut().enumerate().for_each(|(number, fresh)| {
-                let own = &values[points[number] * HEADINGS..][..HEADINGS];
-                for (heading, fresh) in fresh.iter_mut().enumerate() {
-                    let moved = self.best_move(&successors, &values, number, heading);
-                    *fresh = moved.max(self.best_turn(&successors, own, number, heading));
-                }
-            });
+            for ((fresh, values_there), successors) in fresh.iter_mut().zip(&values).zip(&successors) {
+                fresh.par_iter_mut().enumerate().for_each(|(number, fresh)| {
+                    let own = &values_there[points[number] * HEADINGS..][..HEADINGS];
+                    for (heading, fresh) in fresh.iter_mut().enumerate() {
+                        let moved = self.best_move(successors, &values, number, heading);
+                        *fresh = moved.max(self.best_turn(successors, own, number, heading));
+                    }
+                });
+            }
             let mut change = 0.0_f32;
-            for (point, fresh) in points.iter().zip(&fresh) {
-                let old = &mut values[point * HEADINGS..(point + 1) * HEADINGS];
-                for (old, fresh) in old.iter_mut().zip(fresh) {
-                    change = change.max((*fresh - *old).abs());
-                    *old = *fresh;
+            for (values, fresh) in values.iter_mut().zip(&fresh) {
+                for (point, fresh) in points.iter().zip(fresh) {
+                    let old = &mut values[point * HEADINGS..(point + 1) * HEADINGS];
+                    for (old, fresh) in old.iter_mut().zip(fresh) {
+                        change = change.max((*fresh - *old).abs());
+                        *old = *fresh;
+                    }
                 }
             }
             if change < TOLERANCE * scale {
@@ -167,8 +174,8 @@ impl Planner {
         values
     }
 
-    /// What the actions lead to from every heading on these points.
-    fn successors(&self, shared: &CohortData, origin: u32, points: &[usize]) -> Successors {
+    /// What the actions lead to from every heading on these points, for room `origin` among those from `first` on.
+    fn successors(&self, shared: &CohortData, first: u32, origin: u32, points: &[usize]) -> Successors {
         let moves: Vec<Action> = self.children.iter().copied().filter(|a| a.travel() != 0.0).collect();
         let turns: Vec<Action> = self.children.iter().copied().filter(|a| a.turn() != 0.0).collect();
         let outcomes = |actions: &[Action]| -> Vec<Vec<Outcome>> {
@@ -184,7 +191,7 @@ impl Planner {
         };
         let blends = outcomes(&moves)
             .iter()
-            .map(|outcomes| outcomes.iter().map(|outcome| self.blend(outcome)).collect())
+            .map(|outcomes| outcomes.iter().map(|outcome| self.blend(outcome, first)).collect())
             .collect();
         let turned = (0..HEADINGS)
             .flat_map(|heading| turns.iter().map(move |action| (heading, action)))
@@ -196,13 +203,13 @@ impl Planner {
         Successors { moves, blends, turned, turn_outcomes }
     }
 
-    fn best_move(&self, successors: &Successors, values: &[f32], number: usize, heading: usize) -> f32 {
+    fn best_move(&self, successors: &Successors, values: &[Vec<f32>], number: usize, heading: usize) -> f32 {
         let Successors { moves, blends, .. } = successors;
         let of_heading = blends[number].as_chunks::<SLIPS>().0[heading * moves.len()..].iter();
         let worth = |(action, blends): (&Action, &[Blend; SLIPS])| {
             let mut worth = if *action == Action::Backward { -self.backward_cost } else { 0.0 };
             for (blend, (_, weight)) in blends.iter().zip(&self.slips) {
-                let mut after = 0.0;
+                let (mut after, values) = (0.0, &values[blend.origin as usize]);
                 for (neighbour, share) in blend.points.iter().zip(&blend.shares) {
                     after += share * values[*neighbour as usize * HEADINGS + heading];
                 }
@@ -235,9 +242,10 @@ impl Planner {
     }
 
     /// Where an outcome lies between the grid's points.
-    fn blend(&self, outcome: &Outcome) -> Blend {
-        let mut blend = Blend { points: [0; 4], shares: [0.0; 4], reward: outcome.reward };
+    fn blend(&self, outcome: &Outcome, first: u32) -> Blend {
+        let mut blend = Blend { points: [0; 4], shares: [0.0; 4], origin: 0, reward: outcome.reward };
         if !outcome.ended {
+            blend.origin = outcome.origin - first;
             for (slot, (point, share)) in self.grid.corners(outcome.pose).into_iter().enumerate() {
                 blend.points[slot] = point as u32;
                 blend.shares[slot] = share;
@@ -264,11 +272,7 @@ struct Successors {
 struct Blend {
     points: [u32; 4],
     shares: [f32; 4],
+    /// Index of the values that apply there.
+    origin: u32,
     reward: f32,
-}
-
-/// Room in which a trial that begins here begins.
-pub fn origin_of(shared: &CohortData, pose: Pose) -> u32 {
-    let room = shared.floor.plan.room_of(pose.x, pose.y);
-    if room == NOWHERE { 0 } else { room }
 }

@@ -170,7 +170,7 @@ impl Sample {
     pub fn difference(&self, other: &Self) -> Option<Difference> {
         let episodes = EPISODES as usize;
         let robots = || pairs("step", "action", &self.robots, &other.robots, |a, b| parity::step(a, b));
-        let cohorts = || pairs("advance", "cohort", &self.cohorts, &other.cohorts, parity::advance);
+        let cohorts = || pairs("train", "cohort", &self.cohorts, &other.cohorts, parity::advance);
         let test = |a: &Vec<_>, b: &Vec<_>| parity::evaluate(a, b, episodes);
         let tests = || pairs("evaluate", "test", &self.tests, &other.tests, test);
         robots().or_else(cohorts).or_else(tests)

@@ -4,7 +4,7 @@ use super::adapter::{gpu, opened};
 use super::broken::rewritten;
 use super::work::{END, TREE, work};
 use skilltree::backend::gpu::GpuOptions;
-use skilltree::backend::gpu::dispatch_size::quantum_turns;
+use skilltree::backend::gpu::dispatch_size::iteration_turns;
 use skilltree::backend::gpu::source::{Kernel, Part, TRAIN};
 use skilltree::backend::gpu::workgroup_weights::holders;
 use skilltree::backend::{Backend, Cohort};
@@ -31,7 +31,7 @@ fn counting(kernel: Kernel) -> Kernel {
 }
 
 #[test]
-fn no_quantum_takes_more_turns_than_the_governor_counts() {
+fn no_iteration_takes_more_turns_than_the_governor_counts() {
     let _alone = gpu();
     let single = GpuOptions { iterations: Some(1), ..GpuOptions::default() };
     let mut gpu = opened(&single);
@@ -47,8 +47,8 @@ fn no_quantum_takes_more_turns_than_the_governor_counts() {
     for (cohort, replayed) in [(&TREE.cohorts()[0], false), (&lean.cohorts()[0], true)] {
         let (seen, held) = most(cohort);
         let holders = holders(cohort, held);
-        let counted = quantum_turns(&cohort.shared, holders);
+        let counted = iteration_turns(&cohort.shared, holders);
         assert!(seen <= counted && 5 * seen > 4 * counted, "{seen} turns of {counted}");
-        assert_eq!(counted > quantum_turns(&cohort.shared, 0), replayed, "{holders:b}");
+        assert_eq!(counted > iteration_turns(&cohort.shared, 0), replayed, "{holders:b}");
     }
 }

@@ -31,12 +31,12 @@ pub struct Governor {
 pub struct Share {
     /// Workgroups.
     pub groups: u32,
-    /// Quanta of each.
+    /// Iterations of each.
     pub iterations: u32,
 }
 
 impl Share {
-    /// Quanta of all workgroups.
+    /// Iterations of all workgroups.
     pub fn work(self) -> u64 {
         u64::from(self.groups) * u64::from(self.iterations)
     }
@@ -100,7 +100,7 @@ pub fn step_turns(shared: &CohortData) -> u32 {
 /// root and of the skills on the way down to an action, or a replayed transition, which runs the nets forwards and one
 /// of them backwards. `holders` are the bits of the skills whose weights lie in workgroup memory then: it may be the
 /// first transition of a dispatch and the last one.
-pub fn quantum_turns(shared: &CohortData, holders: u32) -> u32 {
+pub fn iteration_turns(shared: &CohortData, holders: u32) -> u32 {
     let act = (0..shared.skills.len()).map(|root| act_turns(shared, root)).max().unwrap_or(0);
     let replay = shared.skills.iter().enumerate().map(|(skill, plan)| {
         let held = (holders >> skill) & 1 == 1;
@@ -201,12 +201,12 @@ fn longest_list(plan: &WorldUniform, tables: &[u32]) -> u32 {
 mod tests {
     use super::*;
 
-    fn settle(seconds_per_quantum: f64, groups: u32, ceiling: u32) -> (Share, f64) {
+    fn settle(seconds_per_iteration: f64, groups: u32, ceiling: u32) -> (Share, f64) {
         let mut governor = Governor::new(None, ceiling);
         let mut longest = 0.0_f64;
         for _ in 0..60 {
             let share = governor.share(groups);
-            let seconds = f64::from(share.groups) * f64::from(share.iterations) * seconds_per_quantum;
+            let seconds = f64::from(share.groups) * f64::from(share.iterations) * seconds_per_iteration;
             longest = longest.max(seconds);
             governor.took(share, Duration::from_secs_f64(seconds), true);
         }

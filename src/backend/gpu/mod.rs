@@ -25,7 +25,7 @@ use crate::layout::{Dispatch, Episode, LearnerState, Robot, TRIAL_WORDS};
 use bytemuck::Zeroable;
 use conformance::{Verdict, examine};
 use device::Device;
-use dispatch_size::{Share, ceiling, quantum_turns, step_turns};
+use dispatch_size::{Share, ceiling, iteration_turns, step_turns};
 use in_flight::{Flight, IN_FLIGHT, Rounds, Traffic};
 use pipeline_cache::Stage;
 use run_evaluation::finish;
@@ -190,7 +190,7 @@ impl Backend for GpuBackend {
         self.advance.wanted = wanted(&cohort).into_iter().filter(|words| *words <= self.held).collect();
         let dispatch = self.uniform(TRAIN.name)?;
         let (pipeline, governor) = self.advance.ready(&self.device)?;
-        let turns = quantum_turns(&cohort.shared, holders(&cohort, pipeline.held()));
+        let turns = iteration_turns(&cohort.shared, holders(&cohort, pipeline.held()));
         let most = ceiling(self.verdict.loop_budget, turns);
         governor.set_ceiling(most);
         self.evaluate.governor.set_ceiling(most);

@@ -52,7 +52,7 @@ impl Pipeline {
                 ..Default::default()
             };
             // SAFETY: naga validated the module and wrote these words with bounded indices and zeroed
-            // workgroup memory, but for the array `held` of `advance`, whose words are written before they are
+            // workgroup memory, but for the array `held` of `train`, whose words are written before they are
             // read; all loops count up to a bound; the layout was made from the same module.
             unsafe { device.device.create_shader_module_passthrough(descriptor) }
         } else {

@@ -1,4 +1,4 @@
-//! How many words of a workgroup's memory hold weights while a learner replays: `HELD` of kernel `advance`.
+//! How many words of a workgroup's memory hold weights while a learner replays: `HELD` of kernel `train`.
 //!
 //! No more than the largest skill that fits, as memory that a workgroup takes keeps others from running beside it.
 

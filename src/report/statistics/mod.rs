@@ -8,9 +8,6 @@ mod estimate;
 mod selection;
 mod survival;
 
-pub use estimate::{
-    BAND_RESAMPLES, Estimate, Statistic, TABLE_RESAMPLES, bootstrap, interquartile_mean, mean, mean_of,
-    paired_difference, quantile, ratio, ratio_of, share_below, sorted, wilson,
-};
-pub use selection::{Selection, select};
-pub use survival::{SurvivalCurve, SurvivalStep, TimeToEvent};
+pub use estimate::*;
+pub use selection::*;
+pub use survival::*;

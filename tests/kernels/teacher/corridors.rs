@@ -275,6 +275,25 @@ fn a_step_cost_and_a_region_make_the_shortest_paths() {
     }
 }
 
+/// A door that pays and ends nothing: the robot goes to and fro through it. A crossing counts 13 in beyond the wall, at
+/// place 12 eastwards and at place 8 westwards, four moves apart.
+#[test]
+fn a_door_pays_again_from_the_other_room() {
+    let mut skill = docking();
+    skill.params.reward = rewards(&[(Event::PassedDoor, 10.0)]);
+    skill.goal = 0;
+    let world = corridor(18.0, 0);
+    let shared = floor_only(&world);
+    let planner = Planner::new(&world, &shared, &skill, &terms(SILENT, 0.0, MOVE as f32));
+    let round = 0.9_f64.powi(4);
+    for (origin, place) in [(0, 8), (0, 9), (0, 11), (1, 12), (1, 10), (1, 9)] {
+        let moves = if origin == 0 { 12 - place } else { place - 8 };
+        let expected = 10.0 * 0.9_f64.powi(moves - 1) / (1.0 - round);
+        let pose = on_line(f64::from(place * MOVE), 0.0, 0);
+        close(planner.value(origin, pose), expected, || format!("place {place} from room {origin}"));
+    }
+}
+
 /// Paid for every step in sight of the light: all there is on one side of a wall, nothing on the other.
 #[test]
 fn the_light_is_worth_its_reward_where_it_is_in_sight() {
