@@ -105,7 +105,8 @@
 //! - **a hyper-parameter**: a row in `layout/params.rs`, which makes the key, its reader, its reference page, the learner's
 //!   record and the field in WGSL; its use in a kernel pair.
 //! - **an optimiser**: a word in `layout/choices.rs`, a pair in `qnet/optimiser/`, its name and its call in the pair
-//!   `qnet/optimiser/mod`. A form for the lanes of a CPU is a branch in `backend/cpu/lanes/optimiser.rs`, and optional.
+//!   `qnet/optimiser/mod`; `config/unused_keys.rs` where it takes other numbers than Adam. A form for the lanes of a CPU is a
+//!   branch in `backend/cpu/lanes/optimiser.rs`, and optional.
 //! - **a statistic**: a function in a file of `report/statistics/`, a field in `report/page.rs`, a column in its template.
 //! - **a number measured in trials**: a field of `layout::Agent`, its sum in the pair `env/step`; a field of
 //!   `run_folder::Sums` and its column; where sums are taken of tests and of the planner's (`train/train_loop.rs`,
