@@ -89,6 +89,7 @@
 //! | [`train`] | arms x points x seeds -> cohorts -> results |
 //! | `report` | statistics, figures, the page; reads run folders only |
 //! | [`mod@bench`] | rates, checked first |
+//! | [`mod@experiment`] | the facade: load, run, read |
 //! | [`cli`] | commands |
 //!
 //! A test computes this order from the imports and knows no exceptions; within a room no circle of files is allowed.

@@ -115,9 +115,10 @@ fn named(module: &[String], is_folder: bool, text: &str, children: &BTreeSet<Str
     out
 }
 
-/// All files of `src` below a folder, and which of them uses which.
+/// All files of `src` but the two that only name the others, and which of them uses which.
 fn file_uses() -> Uses {
-    let all: Vec<String> = files("src", ".rs").into_iter().filter(|file| file.contains('/')).collect();
+    let names_others = |file: &str| ["lib.rs", "main.rs"].contains(&file);
+    let all: Vec<String> = files("src", ".rs").into_iter().filter(|file| !names_others(file)).collect();
     let modules: BTreeSet<Vec<String>> = all.iter().map(|file| module_of(file)).collect();
     let folder = |file: &str| file.ends_with("/mod.rs");
     let children = |module: &[String]| -> BTreeSet<String> {
@@ -172,6 +173,21 @@ fn modules_have_one_order() {
         circles(&uses).iter().any(|circle| circle.contains("backend")),
         "a use of `cli` by `layout` closes circles"
     );
+}
+
+/// A room uses those above it in the table of `src/lib.rs`, and nobody is left out of it.
+#[test]
+fn the_table_of_rooms_is_in_order() {
+    let text = read("src/lib.rs");
+    let table = text.split("# Rooms").nth(1).expect("the table").split("# How to add").next().expect("the table");
+    let row = |line: &str| Some(line.strip_prefix("//! | ")?.split('`').nth(1)?.trim_start_matches("mod@").to_owned());
+    let rooms: Vec<String> = table.lines().filter_map(row).collect();
+    let uses = room_uses(&file_uses());
+    assert_eq!(rooms.iter().collect::<BTreeSet<_>>(), uses.keys().collect());
+    for (at, room) in rooms.iter().enumerate() {
+        let later: Vec<&String> = uses[room].iter().filter(|used| !rooms[..at].contains(used)).collect();
+        assert!(later.is_empty(), "{room} uses {later:?}, which stand below it");
+    }
 }
 
 #[test]
