@@ -5,13 +5,13 @@ use super::super::learner::{Learner, seen};
 use super::super::oracle::{Written, ahead};
 use super::super::random::random;
 use super::memories::stream;
-use skilltree::env::motion::{BESIDE_LEFT, BESIDE_RIGHT, COLLISION, DOCKED, FORWARD};
+use skilltree::env::motion::{ACTED, BESIDE_LEFT, BESIDE_RIGHT, COLLISION, DOCKED, FORWARD};
 use skilltree::env::workgroup::CohortData;
 use skilltree::layout::{Agent, HyperParams};
 use skilltree::train::observation::floor_only;
 use skilltree::world::Pose;
 
-/// Drives one step and looks; the events.
+/// Drives one step and looks; the events, but for that of every step.
 #[track_caller]
 fn drive(shared: &CohortData, params: &HyperParams, pose: Pose, action: u32) -> (Agent, u32) {
     let agent = seen(shared, std::slice::from_ref(params), &[], |group| {
@@ -24,7 +24,8 @@ fn drive(shared: &CohortData, params: &HyperParams, pose: Pose, action: u32) -> 
         group.observe_and_score(0);
         group.agent
     });
-    (agent, agent.events)
+    assert_eq!(agent.events & ACTED, ACTED, "an action was taken");
+    (agent, agent.events & !ACTED)
 }
 
 #[test]

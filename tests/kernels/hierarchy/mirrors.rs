@@ -7,7 +7,7 @@ use super::super::oracle::Written;
 use super::super::random::random;
 use bytemuck::Zeroable;
 use skilltree::config::plan::Event;
-use skilltree::env::motion::{COLLISION, FORWARD};
+use skilltree::env::motion::{ACTED, COLLISION, FORWARD, LIT};
 use skilltree::env::segments::SegmentGrid;
 use skilltree::env::workgroup::CohortData;
 use skilltree::layout::{NO_CHILD, Step, TERMINATED, TRUNCATED};
@@ -165,7 +165,7 @@ fn mirrored_skills_do_in_a_mirrored_world_what_theirs_do() {
             compared += 1;
             assert_eq!(q.map(f32::to_bits), other_q.map(f32::to_bits), "{pose:?}");
             assert_eq!(here.earned, there.earned, "{pose:?}");
-            let swapped = here.events & 7 | (here.events >> 3 & 1) << 4 | (here.events >> 4 & 1) << 3;
+            let swapped = here.events & (7 | LIT | ACTED) | (here.events >> 3 & 1) << 4 | (here.events >> 4 & 1) << 3;
             assert_eq!(swapped, there.events, "{pose:?}");
             lit += u32::from(sees_light(&seen));
             touching += u32::from(here.events & COLLISION != 0 && seen.light_bumpers >> 24 & 0xa != 0);
