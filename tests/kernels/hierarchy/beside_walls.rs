@@ -5,11 +5,17 @@ use super::super::learner::{Learner, seen};
 use super::super::oracle::{Written, ahead};
 use super::super::random::random;
 use super::memories::stream;
+use bytemuck::Zeroable;
 use skilltree::env::motion::{ACTED, BESIDE_LEFT, BESIDE_RIGHT, COLLISION, DOCKED, FORWARD};
 use skilltree::env::workgroup::CohortData;
-use skilltree::layout::{Agent, HyperParams};
+use skilltree::layout::{Agent, HyperParams, SkillShape};
 use skilltree::train::observation::floor_only;
 use skilltree::world::Pose;
+
+/// A floor, and a skill that is about no region.
+fn with_a_skill(written: &Written) -> CohortData {
+    CohortData { skills: vec![SkillShape::zeroed()], ..floor_only(&written.world()) }
+}
 
 /// Drives one step and looks; the events, but for that of every step.
 #[track_caller]
@@ -33,7 +39,7 @@ fn walls_at_known_distances_are_beside_the_robot() {
     let learner = Learner::new(plan_with(TREE, &[SILENT]));
     let params = &learner.params[0];
     assert_eq!((params.beside_near, params.beside_far), (15, 30));
-    let shared = floor_only(&Written::room(400.0, 400.0).world());
+    let shared = with_a_skill(&Written::room(400.0, 400.0));
     for tenths in 121..400_u16 {
         let distance = f64::from(tenths) / 10.0;
         // Whole inches: from 14.5 to below 30.5. Halves are left out.
@@ -69,7 +75,7 @@ fn events_beside_walls_are_those_of_the_geometry() {
     for (set, near, far) in [(&band[1..], 15.0, 30.0), (&band[..], 18.0, 25.0)] {
         let learner = Learner::new(plan_with(TREE, set));
         let params = &learner.params[0];
-        let (shared, field) = (floor_only(&written.world()), written.field());
+        let (shared, field) = (with_a_skill(&written), written.field());
         let (mut next, mut counts, mut docked) = (random(33), [0; 4], 0);
         for _ in 0..6000 {
             let at = [next() * 220.0, next() * 160.0];

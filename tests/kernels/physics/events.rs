@@ -8,8 +8,8 @@ use skilltree::math::rng::Stream;
 use skilltree::world::Pose;
 
 /// Rectangles as the world's file has them.
-const HALL: [f64; 4] = [0.0, 0.0, 176.0, 240.0];
-const BY_LIGHT: [f64; 4] = [264.0, 0.0, 320.0, 56.0];
+const HALL: [f64; 4] = [0.0, 0.0, 140.0, 180.0];
+const BY_LIGHT: [f64; 4] = [240.0, 0.0, 296.0, 56.0];
 
 /// Each event is paid a power of two, so that a reward tells which of them happened.
 const NAMES: [&str; 8] = [
@@ -70,7 +70,7 @@ fn events_of_a_walk_are_those_of_exact_geometry() {
     let mut dark = 0;
     for seed in 0..150 {
         let start = loop {
-            let at = [next() * 320.0, next() * 240.0];
+            let at = [next() * 296.0, next() * 180.0];
             if field.free(at, 12.5) {
                 break Pose { x: at[0] as f32, y: at[1] as f32, heading: (next() * 359.0) as f32 };
             }
