@@ -75,7 +75,7 @@ fn children_end_where_their_regions_say() {
                 let paid = pair[0].reward as u32;
                 assert_eq!(paid & !15, 32, "every step is paid");
                 let [in_a, left_a, entered_b] = [1, 4, 8].map(|bit| paid & bit == bit);
-                assert!(!(in_a && left_a) && !(in_a && entered_b));
+                assert!(!(in_a && (left_a || entered_b)), "it is in room A or has left it");
                 let last = step + 1 == trial.header.steps as usize;
                 assert_eq!(entered_b, last && trial.header.end == TERMINATED);
                 let ended = if pair[0].choice & 0xff == 0 { left_a } else { in_a };
