@@ -7,28 +7,50 @@ pub const EVENTS_FROM: u32 = 24;
 /// Bit of a recorded step's choice that says whether the choice was free: the events end below it.
 pub const DECISION_BIT: u32 = 31;
 
-macro_rules! events {
-    ($($(#[doc = $doc:literal])+ $name:ident = $bit:ident $number:literal, $text:literal,
-        mirror $mirror:ident, needs $needs:expr, told $told:ident;)*) => {
-        /// Something that one primitive step can bring about; its number is its place in rewards.
+macro_rules! named_bits {
+    ($(#[doc = $about:literal])+ $type:ident, $count:ident, $bits:ident:
+        $($(#[doc = $doc:literal])+ $name:ident = $bit:ident $number:literal, $text:literal;)*) => {
+        $(#[doc = $about])+
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         #[repr(u32)]
-        pub enum Event {
+        pub enum $type {
             $($(#[doc = $doc])+ $name = $number,)*
         }
 
-        $(#[doc = concat!("Bit of [`Event::", stringify!($name), "`] in sets of events.")]
+        $(#[doc = concat!("Bit of [`", stringify!($type), "::", stringify!($name), "`].")]
         pub const $bit: u32 = 1 << $number;)*
 
-        impl Event {
+        impl $type {
             /// All of them, by number.
-            pub const ALL: [Self; EVENTS] = [$(Self::$name),*];
+            pub const ALL: [Self; $count] = [$(Self::$name),*];
 
             /// The name used in configs.
             pub const fn name(self) -> &'static str {
                 match self { $(Self::$name => $text),* }
             }
 
+            /// When it happens, in words.
+            pub const fn doc(self) -> &'static str {
+                match self { $(Self::$name => concat!($($doc),+)),* }
+            }
+        }
+
+        /// How many there are.
+        pub const $count: usize = [$($text),*].len();
+        const $bits: [(&str, u32); $count] = [$((stringify!($bit), $bit)),*];
+    };
+}
+
+macro_rules! events {
+    ($($(#[doc = $doc:literal])+ $name:ident = $bit:ident $number:literal, $text:literal,
+        mirror $mirror:ident, needs $needs:expr, told $told:ident;)*) => {
+        named_bits! {
+            /// Something that one primitive step can bring about; its number is its place in rewards.
+            Event, EVENTS, BITS:
+            $($(#[doc = $doc])+ $name = $bit $number, $text;)*
+        }
+
+        impl Event {
             /// Its bit in sets of events.
             pub const fn bit(self) -> u32 {
                 match self { $(Self::$name => $bit),* }
@@ -48,16 +70,7 @@ macro_rules! events {
             const fn told(self) -> Told {
                 match self { $(Self::$name => Told::$told),* }
             }
-
-            /// When it happens, in words.
-            pub const fn doc(self) -> &'static str {
-                match self { $(Self::$name => concat!($($doc),+)),* }
-            }
         }
-
-        /// Number of events.
-        pub const EVENTS: usize = [$($text),*].len();
-        const BITS: [(&str, u32); EVENTS] = [$((stringify!($bit), $bit)),*];
     };
 }
 
@@ -102,40 +115,10 @@ impl Event {
     }
 }
 
-macro_rules! region_events {
-    ($($(#[doc = $doc:literal])+ $name:ident = $bit:ident $number:literal, $text:literal;)*) => {
-        /// Something that one primitive step can bring about in one of the regions that a skill names.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-        #[repr(u32)]
-        pub enum RegionEvent {
-            $($(#[doc = $doc])+ $name = $number,)*
-        }
-
-        $(#[doc = concat!("Bit of [`RegionEvent::", stringify!($name), "`] among those of one region.")]
-        pub const $bit: u32 = 1 << $number;)*
-
-        impl RegionEvent {
-            /// All of them, by number.
-            pub const ALL: [Self; REGION_EVENTS] = [$(Self::$name),*];
-
-            /// The name used in configs, before the region in brackets.
-            pub const fn name(self) -> &'static str {
-                match self { $(Self::$name => $text),* }
-            }
-
-            /// When it happens, in words.
-            pub const fn doc(self) -> &'static str {
-                match self { $(Self::$name => concat!($($doc),+)),* }
-            }
-        }
-
-        /// Number of events of each region.
-        pub const REGION_EVENTS: usize = [$($text),*].len();
-        const REGION_BITS: [(&str, u32); REGION_EVENTS] = [$((stringify!($bit), $bit)),*];
-    };
-}
-
-region_events! {
+named_bits! {
+    /// Something that one primitive step can bring about in one of the regions that a skill names. Its bit is that among
+    /// the events of one region, and configs write the region in brackets behind its name.
+    RegionEvent, REGION_EVENTS, REGION_BITS:
     /// The action ended with the robot's centre in the region.
     In = IN_REGION 0, "in";
     /// The action brought the robot's centre into the region.
