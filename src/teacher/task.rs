@@ -13,6 +13,11 @@ use crate::math::functions::sin_cos;
 use crate::world::{Pose, World};
 use bytemuck::Zeroable;
 
+/// Bits of the events that the sensors tell of after a forward move.
+const TOLD_AHEAD: u32 = Event::told_by_sensors(true);
+/// Bits of those that they tell of after any action.
+const TOLD_ALWAYS: u32 = Event::told_by_sensors(false);
+
 /// What a skill pays for and where it ends.
 #[derive(Debug, Clone)]
 pub(super) struct Task {
@@ -61,7 +66,7 @@ impl Task {
     /// Whether a turn, too, may earn something or end a trial.
     pub(super) fn pays_turns(&self) -> bool {
         let inside = (0..self.regions.len()).map(|region| 1 << RegionEvent::In.number(region));
-        self.matters & inside.fold(ACTED | Event::told_by_sensors(false), |bits, bit: u32| bits | bit) != 0
+        self.matters & inside.fold(ACTED | TOLD_ALWAYS, |bits, bit: u32| bits | bit) != 0
     }
 
     /// What an action does at a pose; the next door counts from room `origin`.
@@ -69,9 +74,10 @@ impl Task {
         let moved = body_after(&shared.floor, pose.x, pose.y, pose.heading, action as u32, slip);
         let after = Pose { x: moved.x, y: moved.y, heading: moved.heading };
         let mut events = moved.events | shared.floor.plan.passed_door(origin, moved.x, moved.y) | ACTED;
-        if self.matters & Event::told_by_sensors(action == Action::Forward) != 0 {
+        if self.matters & (if action == Action::Forward { TOLD_AHEAD } else { TOLD_ALWAYS }) != 0 {
             let (near, far) = self.beside;
-            events |= noiseless_observation(shared, after).observed_events(near, far, action as u32, events);
+            let seen = noiseless_observation(shared, after, self.names(Event::Lit));
+            events |= seen.observed_events(near, far, action as u32, events);
         }
         for (region, area) in self.regions.iter().enumerate() {
             events |= area.crossing_events(pose.x, pose.y, moved.x, moved.y) << RegionEvent::In.number(region);
@@ -84,8 +90,8 @@ impl Task {
     }
 }
 
-/// What sonar and light show at a pose, without noise; the other sensors show nothing.
-fn noiseless_observation(shared: &CohortData, pose: Pose) -> Observation {
+/// What the sonar shows at a pose, and the light where it is asked for, without noise; the other sensors show nothing.
+fn noiseless_observation(shared: &CohortData, pose: Pose, light: bool) -> Observation {
     let (floor, Pose { x, y, heading }) = (&shared.floor, pose);
     let (sine, cosine) = sin_cos(heading);
     let (ux, uy) = rays(cosine, sine);
@@ -94,8 +100,8 @@ fn noiseless_observation(shared: &CohortData, pose: Pose) -> Observation {
     for ray in 0..RAYS {
         seen.sonar[ray / 4] |= sonar_reading(range[place_of(ray)], 1.0) << (8 * (ray % 4));
     }
-    let most = falloff(floor, x, y);
-    if floor.plan.lit == 1 && most > 1.0 && light_in_sight(floor, x, y) {
+    let most = if light && floor.plan.lit == 1 { falloff(floor, x, y) } else { 0.0 };
+    if most > 1.0 && light_in_sight(floor, x, y) {
         let bright = brightness(floor, most, x, y, &ux, &uy);
         let lit = (0..RAYS).filter(|bearing| bright[place_of(*bearing)] > 1.0);
         seen.light_bumpers = lit.fold(0, |bits, bearing| bits | 1 << bearing);

@@ -140,10 +140,14 @@ fn act_turns(shared: &CohortData, root: usize) -> u32 {
         + execute
 }
 
+/// Numbers of the skills among a skill's children.
+fn child_skills(plan: &SkillShape) -> impl Iterator<Item = u32> {
+    plan.child[..plan.children as usize].iter().filter_map(|code| code.checked_sub(SKILL_CODE as u32))
+}
+
 /// The dearest way from a skill that has chosen down to an action.
 fn way_turns(shared: &CohortData, plan: &SkillShape, watched: u32) -> u32 {
-    let skills = plan.child[..plan.children as usize].iter().filter_map(|code| code.checked_sub(SKILL_CODE as u32));
-    let turns = skills.map(|n| {
+    let turns = child_skills(plan).map(|n| {
         let below = &shared.skills[n as usize];
         let known = (watched >> n) & 1 == 1;
         let think =
@@ -155,8 +159,7 @@ fn way_turns(shared: &CohortData, plan: &SkillShape, watched: u32) -> u32 {
 
 /// Whether the child that is being carried out has achieved its goal.
 fn child_goal_turns(shared: &CohortData, plan: &SkillShape) -> u32 {
-    let skills = plan.child[..plan.children as usize].iter().filter_map(|code| code.checked_sub(SKILL_CODE as u32));
-    skills.map(|n| turns(shared.skills[n as usize].regions, 0)).max().unwrap_or(0)
+    child_skills(plan).map(|n| turns(shared.skills[n as usize].regions, 0)).max().unwrap_or(0)
 }
 
 /// A transition of skill `plan`: the draws of the lesson, of its number and of the step, the children in the mirror,
