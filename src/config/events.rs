@@ -62,10 +62,9 @@ impl<'a> EventReader<'a> {
             };
             return Err(origin.error(format!("`{name}` is not one of the events"), hint));
         };
-        match self.world.and_then(|world| Some((world, world.lacks(event.needs())?.name()))) {
+        match self.world.and_then(|world| impossible(event, world)) {
             None => Ok(event as usize),
-            Some((world, lacking)) => {
-                let message = format!("`{name}` cannot happen: the world `{}` has no {lacking}", world.name);
+            Some((message, lacking)) => {
                 Err(origin.error(message, format!("add {lacking} to the world file, or drop this event")))
             }
         }
@@ -92,6 +91,12 @@ impl<'a> EventReader<'a> {
 pub(super) fn event_names() -> Vec<String> {
     let plain = Event::ALL.iter().map(|event| event.name().to_owned());
     plain.chain(RegionEvent::ALL.iter().map(|event| format!("{}(REGION)", event.name()))).collect()
+}
+
+/// That an event cannot happen in a world, and what the world lacks for it.
+pub(super) fn impossible(event: Event, world: &World) -> Option<(String, &'static str)> {
+    let lacking = world.lacks(event.needs())?.name();
+    Some((format!("`{}` cannot happen: the world `{}` has no {lacking}", event.name(), world.name), lacking))
 }
 
 /// That a region has no events in a world: it is not there, or no rectangle.

@@ -45,7 +45,7 @@ pub(super) fn image(
     }
     let mut params = HyperParams { lessons: 0, trials: 0, ..source.params };
     // Regions stay where they are: what happens there is its own image.
-    let mut goal = source.goal & !(1_u32 << EVENTS).wrapping_sub(1);
+    let mut goal = source.goal >> EVENTS << EVENTS;
     for seen in Event::ALL {
         params.reward[seen.mirrored() as usize] = source.params.reward[seen as usize];
         if source.goal & seen.bit() != 0 {

@@ -5,7 +5,7 @@
 //! rows of results, by their order: another floor plan must have the same ones.
 
 use super::arms::small_name;
-use super::events::lacking_region;
+use super::events::{impossible, lacking_region};
 use super::plan::{Alteration, ArmPlan, Event, Noise};
 use super::worlds::{CachedWorld, Worlds};
 use super::{keys, robot};
@@ -83,8 +83,7 @@ fn check_root(cached: CachedWorld<'_>, arm: &ArmPlan, place: &SourceSpan) -> Res
         return Err(place.error(format!("{problem}, where tests of `{}` start", root.name), hint));
     }
     for event in Event::ALL.into_iter().filter(|event| root.goal & event.bit() != 0) {
-        if let Some(lacking) = world.lacks(event.needs()).map(|part| part.name()) {
-            let message = format!("`{}` cannot happen: the world `{}` has no {lacking}", event.name(), world.name);
+        if let Some((message, lacking)) = impossible(event, world) {
             return Err(place.error(message, format!("add {lacking} to it: tests of `{}` end with this", root.name)));
         }
     }
