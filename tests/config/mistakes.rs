@@ -1,13 +1,13 @@
 //! A good message for every mistake: on the command line, in a config, in a world, in a file that cannot be read.
 
-use super::plans::{FILE, WORLD, attempt};
+use super::plans::{FILE, WORLD, attempt, each_is_refused};
 use super::shipped::refused;
 use skilltree::config::{Overrides, Place, load};
 use std::path::{Path, PathBuf};
 
 #[test]
 fn mistakes_on_the_command_line_name_it() {
-    for (set, message, hint) in [
+    let cases = [
         ("learning.learning_rate", "no `=`", "--set key=value"),
         ("=3", "`` is not the name of a key", "--set key=value"),
         ("learning..rate=3", "`learning..rate` is not the name", "--set key=value"),
@@ -76,12 +76,8 @@ fn mistakes_on_the_command_line_name_it() {
         ("name=a/b", "`a/b` cannot be a name", "letters"),
         ("title=3", "`title` must be a string", "quotes"),
         ("nonsense=3", "unknown key `nonsense`", "`learning`"),
-    ] {
-        let error = refused(&[set]);
-        println!("{error}\n");
-        assert!(error.message().contains(message) && error.hint().contains(hint), "{set}\n{error}");
-        assert_eq!(error.place(), &Place::Argument(format!("--set {set}")), "{error}");
-    }
+    ];
+    each_is_refused(&cases, |set| refused(&[set]));
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! What the tests of configs share: files in a folder of their own, and plans compared.
 
 use skilltree::config::plan::Plan;
-use skilltree::config::{ConfigError, Overrides, load};
+use skilltree::config::{ConfigError, Overrides, Place, load};
 use std::path::PathBuf;
 
 /// What `--set` says.
@@ -19,6 +19,16 @@ pub(crate) fn attempt_files(files: &[(&str, &str)]) -> (Result<Plan, ConfigError
     }
     let path = folder.path().join(files[0].0);
     (load(&path, &Overrides::default()), path)
+}
+
+/// Sees that each of these settings is refused: words of the message and of the hint, and the place.
+pub(crate) fn each_is_refused(cases: &[(&str, &str, &str)], refused: impl Fn(&str) -> ConfigError) {
+    for (set, message, hint) in cases {
+        let error = refused(set);
+        println!("{error}\n");
+        assert!(error.message().contains(message) && error.hint().contains(hint), "{set}\n{error}");
+        assert_eq!(error.place(), &Place::Argument(format!("--set {set}")), "{error}");
+    }
 }
 
 fn same(a: &Plan, b: &Plan) {
